@@ -26,8 +26,8 @@ function(hires_library target)
     set_target_properties(${target} PROPERTIES POSITION_INDEPENDENT_CODE ON)
     target_compile_options(${target} PRIVATE ${HIRES_WARNINGS})
     hires_compile_together(${target})
-    # Headers of the layer's own are included by their path from src/.
-    target_include_directories(${target} PRIVATE ${PROJECT_SOURCE_DIR}/src)
+    # Headers beside their sources are included by their path from src/.
+    target_include_directories(${target} PUBLIC $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}/src>)
   else()
     add_library(${target} INTERFACE)
     set(scope INTERFACE)

@@ -1,6 +1,6 @@
 // `hires_lab` of the build without ROS: plays in its own process.
-#include "cli/lab_command_line.h"
-#include "hires/cli/package_folder.h"
+#include "lab/src/verbs/command_line.h"
+#include "cli/package_folder.h"
 
 int main(int argc, char** argv) {
   hires::cli::LabBackends backends;

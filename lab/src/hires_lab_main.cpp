@@ -3,8 +3,8 @@
 
 #include <vector>
 
-#include "cli/lab_command_line.h"
-#include "hires/cli/hypothesis_play.h"
+#include "lab/src/verbs/command_line.h"
+#include "lab/src/experiment/hypothesis_play.h"
 #include "lab/src/graph/hypothesis_run.h"
 #include "lab/src/graph/scenario_run.h"
 

@@ -1,21 +1,21 @@
-#include "hires/cli/command_line.h"
+#include "cli/command_line.h"
 
 #include <CLI/CLI.hpp>
 #include <map>
 
-#include "cli/achieve_command.h"
-#include "cli/imagine_command.h"
-#include "cli/limits_command.h"
-#include "cli/list_command.h"
-#include "cli/localise_command.h"
-#include "cli/map_command.h"
-#include "cli/plan_command.h"
-#include "cli/recognise_command.h"
-#include "hires/cli/blackboard_command.h"
-#include "hires/cli/doctor.h"
-#include "hires/cli/program.h"
-#include "hires/cli/report_output.h"
-#include "hires/cli/verb_table.h"
+#include "cli/program.h"
+#include "cli/report_output.h"
+#include "cli/verb_table.h"
+#include "cli/verbs/achieve/achieve_command.h"
+#include "cli/verbs/blackboard/blackboard_command.h"
+#include "cli/verbs/doctor/doctor.h"
+#include "cli/verbs/imagine/imagine_command.h"
+#include "cli/verbs/limits/limits_command.h"
+#include "cli/verbs/list/list_command.h"
+#include "cli/verbs/localise/localise_command.h"
+#include "cli/verbs/map/map_command.h"
+#include "cli/verbs/plan/plan_command.h"
+#include "cli/verbs/recognise/recognise_command.h"
 
 namespace hires::cli {
 namespace {
@@ -109,9 +109,9 @@ std::string NameOf(const std::string& object, imagination::SetupConfig* setup) {
 
 int RunCommandLine(const std::vector<std::string>& arguments, const Backends& backends) {
   const auto add_verbs = [&](CLI::App* app) { return VerbsOf(app, arguments, backends); };
-  return RunProgram(
-      {kProgramName, "HIRES: imagine an action in physics before doing it", add_verbs, MovedToTheLab()},
-      arguments);
+  return RunProgram({kProgramName, "HIRES: imagine an action in physics before doing it", add_verbs,
+                     MovedToTheLab()},
+                    arguments);
 }
 
 }  // namespace hires::cli

@@ -1,4 +1,4 @@
-#include "hires/cli/crew_display.h"
+#include "cli/crew_display.h"
 
 #include <fmt/format.h>
 #include <unistd.h>

@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include "hires/cli/command_line.h"
+#include "cli/command_line.h"
 #include "hires/geometry/pose.h"
 #include "hires/localisation/robot_log.h"
 #include "hires/sensing/drive_builder.h"

@@ -1,6 +1,6 @@
 // `hires` of the build without ROS: imagines in its own process.
-#include "hires/cli/command_line.h"
-#include "hires/cli/package_folder.h"
+#include "cli/command_line.h"
+#include "cli/package_folder.h"
 
 int main(int argc, char** argv) {
   hires::cli::Backends backends;

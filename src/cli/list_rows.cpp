@@ -1,4 +1,4 @@
-#include "hires/cli/list_rows.h"
+#include "cli/list_rows.h"
 
 #include <fmt/format.h>
 
@@ -6,8 +6,8 @@
 #include <nlohmann/json.hpp>
 
 #include "hires/base/text.h"
-#include "hires/evaluation/report_json.h"
-#include "hires/evaluation/report_table.h"
+#include "reports/report_json.h"
+#include "reports/report_table.h"
 
 namespace hires::cli {
 namespace {

@@ -1,4 +1,4 @@
-#include "hires/cli/package_folder.h"
+#include "cli/package_folder.h"
 
 #include <cstdlib>
 #include <filesystem>

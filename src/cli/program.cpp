@@ -1,4 +1,4 @@
-#include "hires/cli/program.h"
+#include "cli/program.h"
 
 #include <fmt/format.h>
 
@@ -10,12 +10,12 @@
 #include <iostream>
 #include <set>
 
+#include "cli/exit_code.h"
 #include "cli/reading_display.h"
 #include "hires/base/check.h"
 #include "hires/base/error.h"
 #include "hires/base/spelling.h"
 #include "hires/base/text.h"
-#include "hires/cli/exit_code.h"
 
 namespace hires::cli {
 namespace {

@@ -1,4 +1,4 @@
-#include "hires/cli/report_output.h"
+#include "cli/report_output.h"
 
 #include <fmt/format.h>
 #include <spawn.h>
@@ -17,7 +17,7 @@
 #include "hires/base/files/own_input.h"
 #include "hires/base/hash.h"
 #include "hires/base/text.h"
-#include "hires/evaluation/report_json.h"
+#include "reports/report_json.h"
 
 extern char** environ;
 

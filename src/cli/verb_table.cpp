@@ -1,4 +1,4 @@
-#include "hires/cli/verb_table.h"
+#include "cli/verb_table.h"
 
 #include <CLI/CLI.hpp>
 

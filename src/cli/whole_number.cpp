@@ -1,4 +1,4 @@
-#include "hires/cli/whole_number.h"
+#include "cli/whole_number.h"
 
 #include <fmt/format.h>
 

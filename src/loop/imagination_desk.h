@@ -9,7 +9,6 @@
 #include <utility>
 #include <vector>
 
-#include "hires/evaluation/achieve.h"
 #include "hires/execution/monitor.h"
 #include "hires/execution/monitor_config.h"
 #include "hires/imagination/client_config.h"
@@ -18,6 +17,7 @@
 #include "hires/imagination/report.h"
 #include "hires/imagination/scheduler.h"
 #include "hires/imagination/start_spread.h"
+#include "loop/achieve.h"
 #include "loop/blackboard.h"
 #include "loop/rollout_pool.h"
 #include "loop/virtual_clock.h"

@@ -3,17 +3,17 @@
 #include <memory>
 
 #include "hires/control/action_runner.h"
-#include "hires/evaluation/sim_robot_sensors.h"
 #include "hires/execution/monitor_config.h"
 #include "hires/imagination/client_config.h"
 #include "hires/imagination/imagination_setup.h"
-#include "hires/loop/task_loop.h"
 #include "hires/planning/operator_data.h"
 #include "hires/planning/planner_config.h"
 #include "hires/sensing/scan_obstacles.h"
 #include "loop/imagination_desk.h"
 #include "loop/message_line.h"
+#include "loop/task_loop.h"
 #include "loop/tracker.h"
+#include "sim_robot/sim_robot_sensors.h"
 
 namespace hires::loop {
 

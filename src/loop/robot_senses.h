@@ -4,12 +4,12 @@
 #include <vector>
 
 #include "hires/imagination/imagination_setup.h"
-#include "hires/loop/loop_observer.h"
 #include "hires/sensing/object_estimator.h"
 #include "hires/sensing/robot_state_estimator.h"
 #include "hires/sensing/scan_obstacles.h"
 #include "hires/simulation/laser_scanner.h"
 #include "loop/frame_record.h"
+#include "loop/loop_observer.h"
 
 namespace hires::loop {
 

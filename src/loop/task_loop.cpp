@@ -1,17 +1,17 @@
-#include "hires/loop/task_loop.h"
+#include "loop/task_loop.h"
 
 #include <filesystem>
 #include <utility>
 
 #include "hires/base/error.h"
 #include "hires/base/log.h"
-#include "hires/evaluation/scenario.h"
-#include "hires/evaluation/scenario_names.h"
 #include "loop/loop_parts.h"
 #include "loop/middle_layer.h"
 #include "loop/monitor_shell.h"
 #include "loop/robot_side.h"
 #include "loop/task_names.h"
+#include "sim_robot/scenario.h"
+#include "sim_robot/scenario_names.h"
 
 namespace hires::loop {
 namespace {

@@ -2,8 +2,8 @@
 
 #include <string>
 
-#include "hires/evaluation/scenario.h"
 #include "loop/loop_parts.h"
+#include "sim_robot/scenario.h"
 
 namespace hires::loop {
 

@@ -4,7 +4,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "hires/evaluation/report_json.h"
+#include "reports/report_json.h"
 
 namespace hires::python {
 

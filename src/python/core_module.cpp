@@ -8,10 +8,10 @@
 #include <limits>
 
 #include "hires/base/error.h"
-#include "hires/evaluation/report_json.h"
 #include "python/answer.h"
 #include "python/arguments.h"
 #include "python/scene.h"
+#include "reports/report_json.h"
 
 namespace py = pybind11;
 using hires::imagination::Prediction;

@@ -5,12 +5,12 @@
 #include <nlohmann/json.hpp>
 #include <regex>
 
-#include "cli/achieve_command.h"
-#include "cli/achieve_display.h"
+#include "cli/command_line.h"
 #include "cli/command_run.h"
+#include "cli/verbs/achieve/achieve_command.h"
+#include "cli/verbs/achieve/achieve_display.h"
 #include "hires/base/error.h"
 #include "hires/base/text.h"
-#include "hires/cli/command_line.h"
 #include "support/messages.h"
 #include "support/temporary_folder.h"
 

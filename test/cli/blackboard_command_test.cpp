@@ -1,4 +1,4 @@
-#include "hires/cli/blackboard_command.h"
+#include "cli/verbs/blackboard/blackboard_command.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -6,10 +6,10 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
+#include "cli/command_line.h"
 #include "cli/command_run.h"
 #include "hires/base/error.h"
 #include "hires/base/text.h"
-#include "hires/cli/command_line.h"
 #include "hires/knowledge/blackboard_config.h"
 #include "support/temporary_folder.h"
 

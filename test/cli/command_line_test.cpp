@@ -1,4 +1,4 @@
-#include "hires/cli/command_line.h"
+#include "cli/command_line.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -9,8 +9,8 @@
 #include <optional>
 
 #include "cli/command_run.h"
-#include "evaluation/report_examples.h"
 #include "hires/base/text.h"
+#include "reports/report_examples.h"
 #include "support/temporary_folder.h"
 
 namespace hires::cli::command_line_test {

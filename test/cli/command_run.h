@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include "hires/cli/command_line.h"
+#include "cli/command_line.h"
 
 namespace hires::test_support {
 

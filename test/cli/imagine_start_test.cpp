@@ -1,4 +1,4 @@
-#include "hires/cli/imagine_start.h"
+#include "cli/verbs/imagine/imagine_start.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

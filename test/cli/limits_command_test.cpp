@@ -1,4 +1,4 @@
-#include "cli/limits_command.h"
+#include "cli/verbs/limits/limits_command.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

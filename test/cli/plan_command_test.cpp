@@ -1,13 +1,13 @@
-#include "cli/plan_command.h"
+#include "cli/verbs/plan/plan_command.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <nlohmann/json.hpp>
 
+#include "cli/command_line.h"
 #include "cli/command_run.h"
 #include "hires/base/text.h"
-#include "hires/cli/command_line.h"
 #include "support/temporary_folder.h"
 
 namespace hires::cli::plan_command_test {
@@ -25,7 +25,7 @@ using ::testing::Not;
 using ::testing::StartsWith;
 
 std::string Data(const std::string& name) {
-  return HIRES_SOURCE_DIR + std::string("/test/evaluation/data/") + name;
+  return HIRES_SOURCE_DIR + std::string("/test/reports/data/") + name;
 }
 
 /// `hires plan --domain FILE` with more words behind.

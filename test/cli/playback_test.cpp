@@ -1,4 +1,4 @@
-#include "hires/cli/playback.h"
+#include "cli/verbs/imagine/playback.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -8,9 +8,9 @@
 #include <nlohmann/json.hpp>
 #include <regex>
 
+#include "cli/command_line.h"
 #include "cli/command_run.h"
 #include "hires/base/text.h"
-#include "hires/cli/command_line.h"
 #include "hires/perception/depth_sensor.h"
 #include "hires/perception/line_of_sight.h"
 #include "hires/perception/pcd_file.h"

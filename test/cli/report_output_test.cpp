@@ -1,4 +1,4 @@
-#include "hires/cli/report_output.h"
+#include "cli/report_output.h"
 
 #include <gmock/gmock.h>
 #include <unistd.h>
@@ -6,9 +6,9 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
+#include "cli/command_line.h"
 #include "cli/command_run.h"
 #include "hires/base/text.h"
-#include "hires/cli/command_line.h"
 #include "support/messages.h"
 #include "support/temporary_folder.h"
 

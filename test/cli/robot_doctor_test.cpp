@@ -1,4 +1,4 @@
-#include "hires/cli/robot_doctor.h"
+#include "cli/verbs/doctor/robot_doctor.h"
 
 #include <arpa/inet.h>
 #include <gmock/gmock.h>
@@ -10,10 +10,10 @@
 #include <string>
 #include <vector>
 
-#include "cli/robot/robot_doctor_hosts.h"
-#include "cli/robot/robot_doctor_judge.h"
-#include "hires/cli/command_line.h"
-#include "hires/cli/robot_doctor_network.h"
+#include "cli/command_line.h"
+#include "cli/verbs/doctor/robot_doctor_hosts.h"
+#include "cli/verbs/doctor/robot_doctor_judge.h"
+#include "cli/verbs/doctor/robot_doctor_network.h"
 
 namespace hires::cli::robot_doctor_test {
 namespace {

@@ -24,8 +24,9 @@ LAYERS = [
     ["sensing", "mapping"],
     ["simulation", "skills"],
     ["control", "imagination"],
-    ["evaluation"],
+    ["sim_robot"],
     ["loop"],
+    ["reports"],
     ["cli", "python", "ros"],
     ["nodes"],
 ]
@@ -33,11 +34,11 @@ RANK = {layer: rank for rank, line in enumerate(LAYERS) for layer in line}
 LAYERS_WITH_ROS = {"ros", "nodes"}
 
 # Who publishes ground_truth/..., who compares with it, and who keeps what load went through.
-MAY_NAME_TRUTH = ("src/nodes/sim_worker/", "src/nodes/hires/graph_run.h", "config/topple_monitor.yaml")
+MAY_NAME_TRUTH = ("src/nodes/sim_worker/", "config/topple_monitor.yaml")
 
-CODE_FOLDERS = ["include/hires", "src", "test", "benchmark"]
+CODE_FOLDERS = ["include/hires", "src", "test", "benchmark", "lab"]
 TEXT_FOLDERS = [".ci", "action", "benchmark", "cmake", "config", "docs", "examples", "include",
-                "launch", "msg",
+                "lab", "launch", "msg",
                 "scripts", "src", "srv", "test", "urdf", "worlds"]
 # Given as they are: meshes, maps, and data that tests read.
 NOT_OUR_TEXT = re.compile(r"(^|/)test/data/|\.(pgm|png|jpg|gif|stl|dae|obj|bag|db|svg)$", re.IGNORECASE)
@@ -85,7 +86,7 @@ def included_layer(header):
     return parts[1] if parts[0] == "hires" and len(parts) > 2 else None
 
 
-def private_layer(root, header):
+def layer_beside(root, header):
     """The layer that keeps this header beside its sources, if it is named by its path from src/."""
     layer = header.split("/")[0]
     is_there = "/" in header and os.path.exists(os.path.join(root, "src", header))
@@ -95,8 +96,9 @@ def private_layer(root, header):
 def may_include(path, layer, other):
     if RANK[other] < RANK[layer] or other == layer:
         return True
-    # Tests and benchmarks may join layers of one line, which programs join further up.
-    return path.split("/")[0] in ("test", "benchmark") and RANK[other] == RANK[layer]
+    # Tests and benchmarks may join layers of one line, which programs join further up, and show what they
+    # found.
+    return path.split("/")[0] in ("test", "benchmark") and (RANK[other] == RANK[layer] or other == "reports")
 
 
 def code_files(root):
@@ -114,12 +116,12 @@ def check_includes(root):
         if layer is None:
             continue
         for number, header in includes_of(root, path):
-            yield from check_include(path, number, layer, header)
+            yield from check_include(root, path, number, layer, header)
 
 
-def check_include(path, number, layer, header):
+def check_include(root, path, number, layer, header):
     place = f"{path}:{number}"
-    other = included_layer(header)
+    other = included_layer(header) or layer_beside(root, header)
     if other is not None and other not in RANK:
         yield f"{place}: layer '{other}' of {header} is unknown; add it to LAYERS in test/house"
     elif other is not None and not may_include(path, layer, other):
@@ -132,20 +134,35 @@ def check_include(path, number, layer, header):
                "convert in the layer 'ros'")
 
 
-def check_private_headers(root):
-    """What stands beside the sources of a layer is for that layer alone."""
-    for path in code_files(root) + example_files(root):
-        layer = layer_of(path)
+NOT_INSTALLED = ("include/hires/ros/",)  # see hides_ros
+
+
+def check_installed_headers(root):
+    """What other packages include must find what it includes; nor may they name what stands in src."""
+    installed = [path for path in code_files(root)
+                 if path.startswith("include/") and not path.startswith(NOT_INSTALLED)]
+    for path in installed + example_files(root):
         for number, header in includes_of(root, path):
-            owner = private_layer(root, header)
-            if owner is None:
-                continue
-            if owner != layer:
-                yield (f"{path}:{number}: includes {header}, which layer '{owner}' keeps for itself; "
-                       f"if others need it, it belongs into include/hires/{owner}")
-            elif path.startswith("include/"):
-                yield (f"{path}:{number}: is for others, but includes {header}, which is not "
-                       f"installed; move that to include/hires/{owner}, or include it in the source")
+            if layer_beside(root, header):
+                yield (f"{path}:{number}: is for others, but includes {header}, which is not installed; "
+                       f"move that to include/hires/{header.split('/')[0]}, or this beside its source")
+
+
+NAMES_THE_LAB = re.compile(r"\bhires_lab\b|\blab/|\bHIRES_LAB\b")
+
+
+def check_lab_apart(root):
+    """The lab judges the product, which does not know it: not by an include, nor by what it links."""
+    for path in code_files(root):
+        for number, header in includes_of(root, path) if path.startswith(("include/", "src/")) else ():
+            if header.startswith("lab/"):
+                yield (f"{path}:{number}: includes {header}, but nothing in src/ sees the lab; move what "
+                       "both need into src/")
+    builds = [path for path in files_below(root, "src") if os.path.basename(path) == "CMakeLists.txt"]
+    for path in builds + [path for path in ("scripts/demo",) if os.path.exists(os.path.join(root, path))]:
+        for number, line in enumerate(re.sub(r"#.*", "", read(root, path)).splitlines(), start=1):
+            if NAMES_THE_LAB.search(line):
+                yield f"{path}:{number}: names the lab, which builds upon the product and not the reverse"
 
 
 def hides_ros(path):
@@ -409,7 +426,7 @@ def check_rooms(root):
     """A folder fits in a glance; a header and its source in one folder are one unit."""
     folders = {}
     for path in code_files(root):
-        if path.startswith(("include/hires/", "src/")):
+        if path.startswith(("include/hires/", "src/", "lab/src/")):
             folder, name = os.path.split(path)
             folders.setdefault(folder, set()).add(os.path.splitext(name)[0])
     for folder, units in sorted(folders.items()):
@@ -469,7 +486,7 @@ def check_own_header(root, path):
     includes = list(includes_of(root, path))
     number, first = includes[0] if includes else (1, "nothing")
     own, layer = own_headers(root, path), layer_of(path)
-    has_part = any(layer in (included_layer(header), private_layer(root, header)) or
+    has_part = any(layer in (included_layer(header), layer_beside(root, header)) or
                    os.path.exists(os.path.join(root, os.path.dirname(path), header))
                    for _, header in includes)
     if own and first not in own:
@@ -626,16 +643,16 @@ ALSO_MEANS = {
         "src/planning/search/operator_applier.cpp", "src/planning/check/step_replay.cpp",
         "src/translation/wanted_state.cpp"},
     "motors_halted": {  # a key of a robot's names, a finding of the doctor
-        "src/cli/robot/robot_doctor_judge.cpp", "src/control/names/robot_names.cpp"},
-    "busy": {"src/evaluation/achieve.cpp"},  # outcomes of a task, from here on
+        "src/cli/verbs/doctor/robot_doctor_judge.cpp", "src/control/names/robot_names.cpp"},
+    "busy": {"src/loop/achieve.cpp"},  # outcomes of a task, from here on
     "dry_run": {
-        "src/evaluation/achieve.cpp", "src/nodes/execution_monitor/execution_messages.cpp",
+        "src/loop/achieve.cpp", "src/nodes/execution_monitor/execution_messages.cpp",
         "src/nodes/execution_monitor/execution_monitor_node.cpp", "src/nodes/middle_layer/middle_layer_params.cpp"},
     "preempted": {
-        "src/evaluation/achieve.cpp", "src/execution/step_watch.cpp",
+        "src/loop/achieve.cpp", "src/execution/step_watch.cpp",
         "src/nodes/execution_monitor/execution_messages.cpp"},
     "unavailable": {  # an outcome of imagination
-        "src/evaluation/achieve.cpp", "src/nodes/execution_monitor/execution_messages.cpp"},
+        "src/loop/achieve.cpp", "src/nodes/execution_monitor/execution_messages.cpp"},
 }
 COMMENT_OR_TEXT = re.compile(r'//[^\n]*|/\*.*?\*/|"(?:[^"\\\n]|\\.)*"', re.DOTALL)
 FOR_PEOPLE = r"\b[\w.>()\[\]-]*(?:reason|detail|failure|why)_?(?:\(\))?"
@@ -739,7 +756,7 @@ RUNS_CASES_ITSELF = re.compile(r"\b(?:rosunit\.unitrun|rostest\.(?:rosrun|run|un
 
 def check_rostests(root):
     """rosunit does not say which part of a test failed; what runs the cases for all tests does."""
-    for path in [p for folder in ("test", "examples") for p in files_below(root, folder)]:
+    for path in [p for folder in ("test", "lab/test", "examples") for p in files_below(root, folder)]:
         if not path.endswith(".py") or path == TEST_RUN or path.startswith("test/house/"):
             continue
         for number, line in enumerate(read(root, path).splitlines(), start=1):
@@ -750,15 +767,16 @@ def check_rostests(root):
 
 def check_test_namespaces(root):
     """Files of tests are compiled together; what each defines for itself must not meet."""
-    for path in files_below(root, "test"):
-        if not path.endswith("_test.cpp") or layer_of(path) is None:
+    for path in files_below(root, "test") + files_below(root, "lab/test"):
+        layer = "lab" if path.startswith("lab/") else layer_of(path)
+        if not path.endswith("_test.cpp") or layer is None:
             continue
         stem = os.path.basename(path)[:-len(".cpp")]
         text = read(root, path)
         own = re.compile(rf"^namespace hires\w*(?:::\w+)*::{stem} {{$", re.MULTILINE)
         if re.search(r"^(namespace|TEST)", text, re.MULTILINE) and not own.search(text):
             yield (f"{path}:1: defines what it needs in a namespace that other files of tests share; "
-                   f"write namespace hires::{layer_of(path)}::{stem}")
+                   f"write namespace hires::{layer}::{stem}")
 
 
 def check_instructions(root):
@@ -766,7 +784,7 @@ def check_instructions(root):
     path = "CONTRIBUTING.md"
     if not os.path.exists(os.path.join(root, path)):
         return
-    named = re.compile(r"`((?:cmake|config|docs|examples|include|launch|scripts|src|test)/[\w./-]+)`")
+    named = re.compile(r"`((?:cmake|config|docs|examples|include|lab|launch|scripts|src|test)/[\w./-]+)`")
     for number, line in enumerate(read(root, path).splitlines(), start=1):
         for file in named.findall(line):
             if not os.path.exists(os.path.join(root, file)):
@@ -784,7 +802,7 @@ def check_ground_truth(root):
                        f"command line may, and tests")
 
 
-CHECKS = [check_includes, check_private_headers, check_public_headers, check_hidden_headers,
+CHECKS = [check_includes, check_installed_headers, check_lab_apart, check_public_headers, check_hidden_headers,
           check_light_headers, check_dependencies, check_circles, check_units_with_ros, check_nodes_apart, check_rooms,
           check_functions, check_headers, check_whitespace, check_packages, check_libraries,
           check_catkin_components,

@@ -289,17 +289,27 @@ class CheckTreeTest(unittest.TestCase):
                          "src/base/room/rng.cpp": '#include <vector>\n#include "hires/base/rng.h"\n'},
                         "src/base/room/rng.cpp:1", "start with its own header")
 
-    def test_a_header_of_a_layer_alone_that_others_include_is_found(self):
+    def test_headers_beside_their_sources_are_included_from_above_alone(self):
+        inner = {"src/geometry/inner.h": "#pragma once\n"}
+        include = '#include "geometry/inner.h"\n'
+        self.assertEqual(self.complaints({**inner, "test/robot/a_test.cpp": include}), [])
+        self.expect_one({**inner, "src/base/rng.cpp": '#include "hires/base/rng.h"\n' + include},
+                        "src/base/rng.cpp:2", "an arrow up")
+
+    def test_a_header_for_others_that_includes_one_that_is_not_installed_is_found(self):
         inner = {"src/base/inner.h": "#pragma once\n"}
         include = '#include "base/inner.h"\n'
-        self.assertEqual(self.complaints({**inner, "test/base/inner_test.cpp": include}), [])
-        for path in ("src/nodes/other_main.cpp", "test/support/fakes.h", "test/robot/a_test.cpp",
-                     "examples/own/a.cpp"):
-            guard = ("#pragma once\n" if path.endswith(".h") else
-                     "#include <ros/ros.h>\n" if "nodes" in path else "")
-            self.expect_one({**inner, path: guard + include}, path, "keeps for itself")
         self.expect_one({**inner, "include/hires/base/rng.h": "#pragma once\n" + include},
                         "include/hires/base/rng.h:2", "not installed")
+        self.expect_one({**inner, "examples/own/a.cpp": include}, "examples/own/a.cpp:1", "not installed")
+
+    def test_what_names_the_lab_in_the_product_is_found(self):
+        include = '#include "hires/base/rng.h"\n#include "lab/src/trial/random_tables.h"\n'
+        self.expect_one({"src/base/rng.cpp": include}, "src/base/rng.cpp:2", "sees the lab")
+        self.expect_one({"src/base/more/CMakeLists.txt": "target_link_libraries(a hires_lab)\n"},
+                        "src/base/more/CMakeLists.txt:1", "names the lab")
+        self.expect_one({"scripts/demo": "#!/bin/bash\nscripts/build hires_lab\n"}, "scripts/demo:2",
+                        "names the lab")
 
     def test_a_header_for_others_that_only_its_layer_includes_is_found(self):
         lonely = {"include/hires/base/dice.h": "#pragma once\n",
@@ -400,9 +410,9 @@ class CheckTreeTest(unittest.TestCase):
     def test_a_word_that_means_something_else_is_left_in_peace_where_it_does(self):
         text = '#include "hires/robot/model.h"\nreturn "busy";\n'
         self.expect_one({**self.TABLE, "src/robot/a.cpp": text}, "src/robot/a.cpp:2", "'busy'")
-        path = "src/evaluation/achieve.cpp"
+        path = "src/loop/achieve.cpp"
         self.assertEqual(self.complaints({**self.TABLE, path: '#include "a.h"\n' + text.split("\n")[1] + "\n",
-                                          "src/evaluation/a.h": "#pragma once\n"}), [])
+                                          "src/loop/a.h": "#pragma once\n"}), [])
 
     def test_words_for_people_that_are_taken_apart_are_found(self):
         start = '#include "hires/robot/model.h"\n'
@@ -434,7 +444,6 @@ class CheckTreeTest(unittest.TestCase):
     def test_only_the_simulated_robot_and_the_command_line_name_the_truth(self):
         listening = {"planner.cpp": 'nh.subscribe("ground_truth/world_state", 1, &Note);\n'}
         self.assertEqual(self.truths_in("src/nodes/sim_worker", listening), [])
-        self.assertEqual(self.truths_in("src/nodes/hires", {"graph_run.h": listening["planner.cpp"]}), [])
         self.assertEqual(len(self.truths_in("src/nodes/hires", listening)), 1)
         found = self.truths_in("src/nodes/planner", listening)
         self.assertEqual(len(found), 1)

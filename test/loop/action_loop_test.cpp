@@ -1,4 +1,4 @@
-#include "hires/loop/action_loop.h"
+#include "loop/action_loop.h"
 
 #include <gtest/gtest.h>
 

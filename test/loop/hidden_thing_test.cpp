@@ -2,8 +2,8 @@
 
 #include <algorithm>
 
-#include "hires/loop/task_loop.h"
 #include "loop/support/task_setup.h"
+#include "loop/task_loop.h"
 
 namespace hires::loop::hidden_thing_test {
 namespace {

@@ -1,8 +1,8 @@
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 
-#include "hires/loop/task_loop.h"
 #include "loop/support/task_setup.h"
+#include "loop/task_loop.h"
 #include "support/temporary_folder.h"
 
 namespace hires::loop::hot_coffee_test {

@@ -3,8 +3,8 @@
 #include <nlohmann/json.hpp>
 
 #include "hires/base/text.h"
-#include "hires/evaluation/timeline.h"
-#include "hires/loop/task_loop.h"
+#include "loop/task_loop.h"
+#include "reports/timeline.h"
 #include "support/temporary_folder.h"
 
 // Messages that are late or lost on their way between the parts of the loop.

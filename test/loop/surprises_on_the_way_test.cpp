@@ -5,8 +5,8 @@
 #include <stdexcept>
 
 #include "hires/base/error.h"
-#include "hires/loop/task_loop.h"
 #include "loop/support/task_setup.h"
+#include "loop/task_loop.h"
 #include "support/temporary_folder.h"
 
 namespace hires::loop::surprises_on_the_way_test {

@@ -1,4 +1,4 @@
-#include "hires/loop/task_loop.h"
+#include "loop/task_loop.h"
 
 #include <gmock/gmock.h>
 
@@ -6,8 +6,8 @@
 #include <nlohmann/json.hpp>
 
 #include "hires/base/error.h"
-#include "hires/evaluation/timeline.h"
 #include "loop/support/task_setup.h"
+#include "reports/timeline.h"
 #include "support/log_catcher.h"
 
 namespace hires::loop::task_loop_test {

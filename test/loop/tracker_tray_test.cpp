@@ -1,10 +1,10 @@
 #include <gmock/gmock.h>
 
-#include "hires/evaluation/sim_robot_sensors.h"
-#include "hires/loop/task_loop.h"
 #include "hires/perception/camera_view.h"
 #include "loop/loop_parts.h"
+#include "loop/task_loop.h"
 #include "loop/tracker.h"
+#include "sim_robot/sim_robot_sensors.h"
 
 namespace hires::loop::tracker_tray_test {
 namespace {

@@ -22,7 +22,7 @@ using ::testing::StartsWith;
 
 const std::string& DeliveryFile() {
   static const std::string path =
-      std::string(HIRES_SOURCE_DIR) + "/test/evaluation/data/delivery.lisp";
+      std::string(HIRES_SOURCE_DIR) + "/test/reports/data/delivery.lisp";
   return path;
 }
 

@@ -7,8 +7,8 @@
 
 namespace hires::base {
 
-/// Letters of a name that are compared with known ones: who asks decides how long a name is, and all
-/// else would wait.
+/// Letters of a name that are compared with known ones: who asks decides how long a name is, and
+/// all else would wait.
 constexpr std::size_t kMostCompared = 200;
 
 /// Levenshtein's distance: letters to replace, insert or delete.

@@ -47,7 +47,7 @@ hires::base::ProcessOptions GraphLaunch(const std::string& package_folder,
                                         const std::vector<std::string>& arguments) {
   hires::base::ProcessOptions options;
   options.command = {"roslaunch", "-p", std::to_string(port),
-                     package_folder + "/launch/hypothesis_run.launch",
+                     package_folder + "/lab/launch/hypothesis_run.launch",
                      fmt::format("base_port:={}", port)};
   options.command.insert(options.command.end(), arguments.begin(), arguments.end());
   options.output = folder + "/system.log";

@@ -10,7 +10,7 @@
 
 #include "hires/base/process.h"
 #include "hires/base/process_watch.h"
-#include "hires/evaluation/experiment/hypothesis.h"
+#include "lab/src/experiment/hypothesis.h"
 
 // What a process needs that plays one run through a graph of nodes of its own.
 namespace hires_ros {

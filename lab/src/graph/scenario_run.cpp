@@ -9,9 +9,9 @@
 #include "hires/base/error.h"
 #include "hires/base/run_processes.h"
 #include "hires/base/text.h"
-#include "hires/cli/scenario_play.h"
-#include "hires/evaluation/report_json.h"
-#include "hires/evaluation/timeline.h"
+#include "lab/src/series/scenario_play.h"
+#include "reports/report_json.h"
+#include "reports/timeline.h"
 #include "lab/src/graph/graph_run.h"
 #include "nodes/hires/remote_achieve.h"
 

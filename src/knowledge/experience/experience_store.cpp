@@ -75,7 +75,7 @@ void Bind(const ExperienceQuery& query, SQLite::Statement* statement) {
 }
 
 constexpr char kMakers[] =
-    "`hires experiment config/experiments/topple_loop.yaml --experiences FILE` makes them, or "
+    "`hires experiment lab/config/experiments/topple_loop.yaml --experiences FILE` makes them, or "
     "`roslaunch hires topple.launch experiences:=FILE`";
 
 [[noreturn]] void FailWithoutExperiences(const std::string& path) {

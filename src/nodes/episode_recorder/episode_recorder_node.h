@@ -10,7 +10,7 @@
 #include <utility>
 #include <vector>
 
-#include "hires/evaluation/episode_topics.h"
+#include "reports/episode/episode_topics.h"
 
 namespace hires_ros {
 

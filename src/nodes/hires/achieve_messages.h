@@ -2,7 +2,7 @@
 
 #include <hires/ImaginationStatus.h>
 
-#include "hires/evaluation/achieve.h"
+#include "loop/achieve.h"
 
 /// Imaginations of a task as messages, and back.
 namespace hires_ros {

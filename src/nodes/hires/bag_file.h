@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "hires/evaluation/episode_topics.h"
+#include "reports/episode/episode_topics.h"
 
 namespace hires_ros {
 

@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "hires/evaluation/episode.h"
-#include "hires/evaluation/episode_topics.h"
+#include "reports/episode/episode.h"
+#include "reports/episode/episode_topics.h"
 
 namespace hires_ros {
 

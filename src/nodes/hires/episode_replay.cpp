@@ -7,9 +7,8 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 
+#include "cli/command_line.h"
 #include "hires/base/error.h"
-#include "hires/cli/command_line.h"
-#include "hires/evaluation/report_json.h"
 #include "hires/imagination/local_setup.h"
 #include "hires/ros/answer/report_messages.h"
 #include "hires/ros/robot/robot_state_messages.h"
@@ -19,6 +18,7 @@
 #include "nodes/hires/episode_recording.h"
 #include "nodes/hires/imagine_recording.h"
 #include "nodes/hires/remote_imagination.h"
+#include "reports/report_json.h"
 
 namespace hires_ros {
 namespace {

@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "hires/evaluation/episode_compare.h"
-#include "hires/evaluation/episode_topics.h"
+#include "reports/episode/episode_compare.h"
+#include "reports/episode/episode_topics.h"
 
 namespace hires_ros {
 

@@ -14,7 +14,6 @@
 #include <utility>
 
 #include "hires/base/error.h"
-#include "hires/evaluation/episode_topics.h"
 #include "hires/imagination/client_config.h"
 #include "hires/imagination/imagination_setup.h"
 #include "hires/robot/load_robot.h"
@@ -27,6 +26,7 @@
 #include "hires/ros/values/geometry_messages.h"
 #include "hires/ros/world/world_messages.h"
 #include "nodes/hires/achieve_messages.h"
+#include "reports/episode/episode_topics.h"
 
 namespace hires_ros {
 namespace {

@@ -3,7 +3,7 @@
 #include <memory>
 #include <string>
 
-#include "hires/loop/loop_observer.h"
+#include "loop/loop_observer.h"
 
 namespace hires_ros {
 

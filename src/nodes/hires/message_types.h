@@ -1,6 +1,6 @@
 #pragma once
 
-#include "hires/cli/robot_needs.h"
+#include "cli/verbs/doctor/robot_needs.h"
 
 namespace hires_ros {
 

@@ -3,7 +3,7 @@
 #include <functional>
 #include <string>
 
-#include "hires/evaluation/achieve.h"
+#include "loop/achieve.h"
 
 namespace hires_ros {
 

@@ -2,7 +2,7 @@
 
 #include <memory>
 
-#include "hires/cli/blackboard_command.h"
+#include "cli/verbs/blackboard/blackboard_command.h"
 
 namespace hires_ros {
 

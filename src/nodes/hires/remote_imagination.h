@@ -5,7 +5,7 @@
 
 #include <functional>
 
-#include "hires/cli/command_line.h"
+#include "cli/command_line.h"
 #include "hires/imagination/report.h"
 
 namespace hires_ros {

@@ -15,12 +15,10 @@
 #include <optional>
 #include <thread>
 
+#include "cli/command_line.h"
+#include "cli/whole_number.h"
 #include "hires/base/error.h"
 #include "hires/base/text.h"
-#include "hires/cli/command_line.h"
-#include "hires/cli/whole_number.h"
-#include "hires/evaluation/report_json.h"
-#include "hires/evaluation/report_table.h"
 #include "hires/imagination/local_imagination.h"
 #include "hires/imagination/local_setup.h"
 #include "hires/ros/answer/report_messages.h"
@@ -28,6 +26,8 @@
 #include "hires/ros/values/action_messages.h"
 #include "nodes/hires/episode_replay.h"
 #include "nodes/hires/remote_imagination.h"
+#include "reports/report_json.h"
+#include "reports/report_table.h"
 
 namespace hires_ros {
 namespace {

@@ -15,9 +15,9 @@
 #include <cstring>
 #include <future>
 
+#include "cli/verbs/doctor/robot_doctor_network.h"
 #include "hires/base/error.h"
 #include "hires/base/process.h"
-#include "hires/cli/robot_doctor_network.h"
 #include "hires/ros/master/xmlrpc_master_api.h"
 #include "hires/sensing/frame_tree.h"
 #include "nodes/hires/data_port.h"

@@ -1,7 +1,7 @@
 #pragma once
 
-#include "hires/cli/robot_needs.h"
-#include "hires/cli/robot_view.h"
+#include "cli/verbs/doctor/robot_needs.h"
+#include "cli/verbs/doctor/robot_view.h"
 
 namespace hires_ros {
 

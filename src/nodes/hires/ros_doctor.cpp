@@ -14,10 +14,10 @@
 #include <iterator>
 #include <set>
 
+#include "cli/verbs/doctor/network_probe.h"
 #include "hires/base/error.h"
 #include "hires/base/process.h"
 #include "hires/base/text.h"
-#include "hires/cli/network_probe.h"
 #include "hires/relay/worker_host_params.h"
 #include "hires/ros/master/xmlrpc_master_api.h"
 

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "hires/cli/finding.h"
+#include "cli/verbs/doctor/finding.h"
 #include "hires/relay/listening_sockets.h"
 #include "hires/relay/uri.h"
 

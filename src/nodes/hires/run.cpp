@@ -7,8 +7,8 @@
 #include <cstdlib>
 #include <vector>
 
-#include "hires/cli/command_line.h"
-#include "hires/cli/robot_doctor.h"
+#include "cli/command_line.h"
+#include "cli/verbs/doctor/robot_doctor.h"
 #include "hires/ros/imagination/rollout_bag.h"
 #include "hires/ros/node/launch_guard.h"
 #include "nodes/hires/drive_bag.h"

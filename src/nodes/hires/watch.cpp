@@ -20,12 +20,12 @@
 #include <optional>
 #include <set>
 
+#include "cli/command_line.h"
+#include "cli/verbs/imagine/playback.h"
 #include "hires/base/error.h"
 #include "hires/base/process.h"
 #include "hires/base/run_processes.h"
 #include "hires/base/text.h"
-#include "hires/cli/command_line.h"
-#include "hires/cli/playback.h"
 #include "nodes/hires/bag_file.h"
 
 namespace hires_ros {

@@ -6,7 +6,6 @@
 
 #include "hires/base/error.h"
 #include "hires/base/log.h"
-#include "hires/evaluation/scenario_names.h"
 #include "hires/ros/master/xmlrpc_master_api.h"
 #include "hires/ros/node/launch_guard.h"
 #include "hires/ros/node/log_sink.h"
@@ -14,6 +13,7 @@
 #include "hires/ros/node/private_params.h"
 #include "nodes/sim_worker/sim_robot_node.h"
 #include "nodes/sim_worker/sim_worker_node.h"
+#include "sim_robot/scenario_names.h"
 
 namespace hires_ros {
 namespace {

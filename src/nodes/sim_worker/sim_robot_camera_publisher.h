@@ -9,7 +9,7 @@
 #include <string>
 
 #include "hires/control/robot_names.h"
-#include "hires/evaluation/truth/sim_robot_cameras.h"
+#include "sim_robot/sim_robot_cameras.h"
 
 namespace hires_ros {
 

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "hires/control/robot_names.h"
-#include "hires/evaluation/truth/sim_robot_lasers.h"
+#include "sim_robot/sim_robot_lasers.h"
 
 namespace hires_ros {
 

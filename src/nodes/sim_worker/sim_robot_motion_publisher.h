@@ -8,8 +8,8 @@
 #include <string>
 
 #include "hires/control/robot_names.h"
-#include "hires/evaluation/sim_robot_world.h"
 #include "hires/robot/robot_profile.h"
+#include "sim_robot/sim_robot_world.h"
 
 namespace hires_ros {
 

@@ -22,11 +22,11 @@
 #include <vector>
 
 #include "hires/base/mailbox.h"
-#include "hires/evaluation/sim_robot_world.h"
 #include "hires/simulation/command_inbox.h"
 #include "hires/simulation/truth_record.h"
 #include "nodes/sim_worker/sim_robot_params.h"
 #include "nodes/sim_worker/sim_robot_publisher.h"
+#include "sim_robot/sim_robot_world.h"
 
 namespace hires_ros {
 

@@ -4,9 +4,9 @@
 
 #include <limits>
 
-#include "hires/evaluation/scenario.h"
 #include "hires/ros/node/private_params.h"
 #include "hires/ros/robot/load_robot_names.h"
+#include "sim_robot/scenario.h"
 
 namespace hires_ros {
 namespace {

@@ -4,8 +4,8 @@
 #include <string>
 
 #include "hires/control/robot_names.h"
-#include "hires/evaluation/sim_robot_sensors.h"
 #include "hires/imagination/imagination_setup.h"
+#include "sim_robot/sim_robot_sensors.h"
 
 namespace hires_ros {
 

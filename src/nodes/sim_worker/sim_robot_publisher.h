@@ -10,8 +10,6 @@
 #include <string>
 #include <vector>
 
-#include "hires/evaluation/sim_robot_sensors.h"
-#include "hires/evaluation/sim_robot_world.h"
 #include "hires/imagination/imagination_setup.h"
 #include "hires/ros/imagination/trace_markers.h"
 #include "hires/simulation/truth_record.h"
@@ -19,6 +17,8 @@
 #include "nodes/sim_worker/sim_robot_laser_publisher.h"
 #include "nodes/sim_worker/sim_robot_motion_publisher.h"
 #include "nodes/sim_worker/sim_robot_params.h"
+#include "sim_robot/sim_robot_sensors.h"
+#include "sim_robot/sim_robot_world.h"
 
 namespace hires_ros {
 

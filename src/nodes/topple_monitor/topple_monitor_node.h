@@ -12,10 +12,10 @@
 #include <string>
 
 #include "hires/base/topic_warnings.h"
-#include "hires/evaluation/experience/experience_writer.h"
-#include "hires/evaluation/experience/load_follower.h"
 #include "hires/knowledge/experience.h"
 #include "nodes/topple_monitor/topple_monitor_params.h"
+#include "reports/experience/experience_writer.h"
+#include "reports/experience/load_follower.h"
 
 namespace hires_ros {
 

@@ -2,9 +2,9 @@
 
 #include <string>
 
-#include "hires/evaluation/experience/load_follower.h"
 #include "hires/imagination/rollout.h"
 #include "hires/robot/robot_profile.h"
+#include "reports/experience/load_follower.h"
 
 namespace hires_ros {
 

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <string>
 
-#include "hires/loop/task_loop.h"
+#include "loop/task_loop.h"
 
 namespace hires::test_support {
 

@@ -12,8 +12,8 @@
 
 #include "hires/base/error.h"
 #include "hires/base/text.h"
-#include "hires/evaluation/sim_robot_world.h"
 #include "nodes/sim_worker/sim_robot_params.h"
+#include "sim_robot/sim_robot_world.h"
 
 namespace {
 

@@ -1,0 +1,29 @@
+#include "lab/src/decision/decision_drive.h"
+
+#include "hires/base/process.h"
+#include "hires/base/resource_use.h"
+#include "loop/action_loop.h"
+
+namespace hires::cli {
+
+std::optional<evaluation::TruthPlay> PlayDrive(const loop::LoopSetup& setup,
+                                               const evaluation::Truth& truth,
+                                               const evaluation::DecisionTask& task,
+                                               const std::string& motion_set, std::uint64_t seed,
+                                               const std::function<bool()>& cancelled) {
+  const double begin = base::SteadyNow(), used = base::ThreadCpuSeconds();
+  const imagination::ImaginationSetup& world = setup.world();
+  const loop::ActionOrder order{evaluation::StartOf(world, task),
+                                evaluation::ActionOf(task, motion_set), truth, seed,
+                                world.rollout.time_limit};
+  const auto run = loop::PlayAction(setup, order, cancelled);
+  if (!run) return std::nullopt;
+  evaluation::TruthPlay play =
+      evaluation::JudgeDrive(run->failure, run->duration, run->truth, task.load);
+  play.virtual_seconds = run->virtual_seconds;
+  play.wall_seconds = base::SteadyNow() - begin;
+  play.processor_seconds = base::ThreadCpuSeconds() - used;
+  return play;
+}
+
+}  // namespace hires::cli

@@ -1,0 +1,21 @@
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <string>
+
+#include "lab/src/decision/decision.h"
+#include "sim_robot/truth.h"
+#include "loop/task_loop.h"
+
+namespace hires::cli {
+
+/// Plays one drive of `hires experiment decision`, as it is judged there.
+/// @return nothing when cancelled.
+std::optional<evaluation::TruthPlay> PlayDrive(const loop::LoopSetup& setup,
+                                               const evaluation::Truth& truth,
+                                               const evaluation::DecisionTask& task,
+                                               const std::string& motion_set, std::uint64_t seed,
+                                               const std::function<bool()>& cancelled = {});
+
+}  // namespace hires::cli

@@ -1,0 +1,367 @@
+#include "lab/src/reproduce/catalogue.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <functional>
+#include <map>
+#include <optional>
+#include <set>
+#include <sstream>
+
+#include "hires/base/error.h"
+#include "hires/base/param_reader.h"
+#include "hires/base/spelling.h"
+#include "hires/base/text.h"
+
+namespace hires::evaluation {
+namespace {
+
+constexpr double kLongest = 86400.0;  // [s]
+constexpr double kLargest = 1e12;
+
+std::vector<std::string> Words(const std::string& text) {
+  std::istringstream in(text);
+  std::vector<std::string> words;
+  for (std::string word; in >> word;) words.push_back(word);
+  return words;
+}
+
+/// The names between braces of a word; other text between braces is no placeholder.
+std::vector<std::string> PlaceholdersIn(const std::string& word) {
+  std::vector<std::string> names;
+  for (std::size_t begin = word.find('{'); begin != std::string::npos;
+       begin = word.find('{', begin + 1)) {
+    const std::size_t end = word.find('}', begin);
+    if (end == std::string::npos) break;
+    const std::string name = word.substr(begin + 1, end - begin - 1);
+    const bool is_name =
+        name.find_first_not_of("abcdefghijklmnopqrstuvwxyz0123456789_/") == std::string::npos;
+    if (is_name && !name.empty()) names.push_back(name);
+  }
+  return names;
+}
+
+/// The play of a placeholder such as {durations} or {durations/folder}.
+std::string PlayIn(const std::string& placeholder) {
+  return placeholder.substr(0, placeholder.find('/'));
+}
+
+bool IsOwn(const std::string& placeholder) {
+  return placeholder == "package" || placeholder == "answer" || placeholder == "folder";
+}
+
+Play ReadPlay(base::ParamReader in) {
+  Play play;
+  play.name = in.GetString("name");
+  play.command = Words(in.GetString("command"));
+  play.inputs = in.GetStrings("inputs");
+  play.seconds = in.Get("seconds", base::Between(0.0, kLongest));
+  play.done_codes = {0};
+  if (in.Has("done_codes")) {
+    play.done_codes.clear();
+    for (const std::string& code : in.GetStrings("done_codes")) {
+      if (code.empty() || code.size() > 3 ||
+          code.find_first_not_of("0123456789") != std::string::npos) {
+        in.Fail("done_codes", fmt::format("has '{}'; wanted exit codes, 0 .. 255", code));
+      }
+      play.done_codes.push_back(std::stoi(code));
+    }
+  }
+  const bool writes = std::any_of(
+      play.command.begin(), play.command.end(),
+      [](const std::string& word) { return word.find("{answer}") != std::string::npos; });
+  if (!writes) in.Fail("command", "which writes no answer; wanted --json {answer} in it");
+  return play;
+}
+
+Acceptance ReadAcceptance(base::ParamReader* in, bool is_published) {
+  using Kind = Acceptance::Kind;
+  const std::map<std::string, Kind> kinds{{"within", Kind::kWithin},    {"factor", Kind::kFactor},
+                                          {"at_least", Kind::kAtLeast}, {"at_most", Kind::kAtMost},
+                                          {"above", Kind::kAbove},      {"below", Kind::kBelow}};
+  std::vector<Acceptance> found;
+  if (in->Has("shown") && in->GetBool("shown")) found.push_back({Kind::kShown, 0.0});
+  for (const auto& [key, kind] : kinds) {
+    if (in->Has(key)) found.push_back({kind, in->Get(key, base::Between(-kLargest, kLargest))});
+  }
+  if (found.size() != 1) {
+    in->Fail("name", "which is accepted by " + std::to_string(found.size()) +
+                         " rules; wanted one of within, factor, at_least, at_most, above, below, "
+                         "shown");
+  }
+  const Acceptance& acceptance = found.front();
+  if (!is_published && (acceptance.kind == Kind::kWithin || acceptance.kind == Kind::kFactor)) {
+    in->Fail("name",
+             "which has nothing published to be near to; wanted `published`, or at_least, at_most, "
+             "above, below");
+  }
+  if (acceptance.kind == Kind::kFactor && acceptance.bound < 1.0) {
+    in->Fail("factor", "below 1; wanted by which factor ours may be off, such as 1.5");
+  }
+  if (acceptance.kind == Kind::kWithin && acceptance.bound < 0.0) {
+    in->Fail("within", "below 0; wanted by how much ours may be off");
+  }
+  return acceptance;
+}
+
+/// "/duration" of the item's first play, or "play:/duration".
+AnswerField ReadField(base::ParamReader* in, const std::string& key,
+                      const std::vector<std::string>& plays) {
+  const std::string text = in->GetString(key);
+  const std::size_t slash = text.find('/');
+  const bool has_play = slash != std::string::npos && slash > 0 && text[slash - 1] == ':';
+  if (slash == std::string::npos || (slash > 0 && !has_play)) {
+    in->Fail(key, "wanted a JSON pointer such as /measures/failed, or PLAY:/measures/failed");
+  }
+  AnswerField field{has_play        ? text.substr(0, slash - 1)
+                    : plays.empty() ? ""
+                                    : plays.front(),
+                    text.substr(slash)};
+  if (std::count(plays.begin(), plays.end(), field.play) == 0) {
+    in->Fail(key, fmt::format("of the play '{}', which is none of the item's", field.play));
+  }
+  return field;
+}
+
+ComparedValue ReadValue(base::ParamReader in, const std::vector<std::string>& plays) {
+  ComparedValue value;
+  value.name = in.GetString("name");
+  if (in.Has("unit")) value.unit = in.GetString("unit");
+  value.at = ReadField(&in, "at", plays);
+  if (in.Has("over")) value.over = ReadField(&in, "over", plays);
+  if (in.Has("published"))
+    value.published = in.Get("published", base::Between(-kLargest, kLargest));
+  value.acceptance = ReadAcceptance(&in, value.published.has_value());
+  if (in.Has("may_be_better")) value.may_be_better = in.GetBool("may_be_better");
+  const bool has_direction = value.acceptance.kind == Acceptance::Kind::kAtLeast ||
+                             value.acceptance.kind == Acceptance::Kind::kAtMost;
+  if (value.may_be_better && !(has_direction && value.published)) {
+    in.Fail("may_be_better",
+            "which needs `published`, and at_least or at_most to say what is better");
+  }
+  return value;
+}
+
+/// Whether a verdict rests on it.
+bool HasBound(const ComparedValue& value) {
+  return value.acceptance.kind != Acceptance::Kind::kShown;
+}
+
+/// "own" says whether an item is judged by what the dissertation says or by bounds of ours alone.
+void ReadOwn(base::ParamReader* in, bool is_judged, CatalogueItem* item) {
+  if (in->Has("own")) item->is_own = in->GetBool("own");
+  if (item->is_own && !is_judged) in->Fail("own", "true, but nothing is judged; leave it out");
+  const bool is_compared = std::any_of(
+      item->values.begin(), item->values.end(),
+      [](const ComparedValue& value) { return HasBound(value) && value.published.has_value(); });
+  if (is_judged && !item->is_own && !is_compared) {
+    in->Fail("item",
+             "which judges no number beside a published one; write `own: true` if its bounds are "
+             "our own, or `published` to a value that is judged");
+  }
+}
+
+CatalogueItem ReadItem(base::ParamReader in) {
+  CatalogueItem item;
+  item.name = in.GetString("item");
+  item.section = in.GetString("section");
+  item.title = in.GetString("title");
+  if (in.Has("plays")) item.plays = in.GetStrings("plays");
+  if (in.Has("drawings")) item.drawings = in.GetStrings("drawings");
+  item.holds = in.GetString("holds");
+  if (in.Has("values")) {
+    for (base::ParamReader value : in.SubList("values")) {
+      item.values.push_back(ReadValue(value, item.plays));
+    }
+  }
+  const bool is_judged = std::any_of(item.values.begin(), item.values.end(), HasBound);
+  if (is_judged) {
+    in.RequireKeys({"bounds", "fails"});
+    item.bounds = in.GetString("bounds");
+    item.fails = in.GetString("fails");
+  }
+  ReadOwn(&in, is_judged, &item);
+  for (const std::string& drawing : item.drawings) {
+    const std::string play = drawing.substr(0, drawing.find(':'));
+    if (play == drawing || std::count(item.plays.begin(), item.plays.end(), play) == 0) {
+      in.Fail("drawings",
+              fmt::format("has '{}'; wanted PLAY:DRAWING of one of the item's plays", drawing));
+    }
+  }
+  return item;
+}
+
+const Play* Find(const std::vector<Play>& plays, const std::string& name) {
+  const auto found =
+      std::find_if(plays.begin(), plays.end(), [&](const Play& play) { return play.name == name; });
+  return found == plays.end() ? nullptr : &*found;
+}
+
+void RequirePlay(const std::string& path, const Catalogue& catalogue, const std::string& who,
+                 const std::string& name) {
+  if (Find(catalogue.plays, name) != nullptr) return;
+  std::vector<std::string> known;
+  for (const Play& play : catalogue.plays) known.push_back(play.name);
+  throw base::ConfigError(
+      fmt::format("{}: {}: {}", path, who, base::UnknownName("play", name, known)));
+}
+
+void CheckNames(const std::string& path, const Catalogue& catalogue) {
+  std::set<std::string> names;
+  const auto take = [&](const std::string& kind, const std::string& name) {
+    if (name.empty() || !names.insert(kind + base::ToLower(name)).second) {
+      throw base::ConfigError(
+          fmt::format("{}: the {} '{}' is named twice or not at all; wanted names that differ",
+                      path, kind, name));
+    }
+  };
+  for (const Play& play : catalogue.plays) take("play", play.name);
+  for (const CatalogueItem& item : catalogue.items) take("item", item.name);
+}
+
+/// Appends a play after those whose answers it takes.
+void Append(const Catalogue& catalogue, const Play& play, std::vector<std::string> path,
+            std::vector<Play>* order) {
+  if (Find(*order, play.name) != nullptr) return;
+  if (std::count(path.begin(), path.end(), play.name) > 0) {
+    throw base::ConfigError(fmt::format("plays need each other's answers in a circle: {} -> {}",
+                                        base::Join(path, " -> "), play.name));
+  }
+  path.push_back(play.name);
+  for (const std::string& name : NeededBy(play)) {
+    Append(catalogue, *Find(catalogue.plays, name), path, order);
+  }
+  order->push_back(play);
+}
+
+void CheckPlays(const std::string& path, const Catalogue& catalogue) {
+  for (const Play& play : catalogue.plays) {
+    for (const std::string& name : NeededBy(play)) {
+      RequirePlay(path, catalogue, "play " + play.name, name);
+    }
+  }
+  for (const CatalogueItem& item : catalogue.items) {
+    for (const std::string& name : item.plays) RequirePlay(path, catalogue, item.name, name);
+  }
+  std::vector<Play> order;
+  for (const Play& play : catalogue.plays) Append(catalogue, play, {}, &order);
+}
+
+/// "6.3.2" lies below "6.3", below "6" and is itself.
+bool LiesBelow(const std::string& section, const std::string& above) {
+  return section == above || section.compare(0, above.size() + 1, above + ".") == 0;
+}
+
+bool IsWanted(const CatalogueItem& item, const std::string& wanted) {
+  return wanted == "all" || LiesBelow(base::ToLower(item.section), wanted) ||
+         base::ToLower(item.name) == wanted;
+}
+
+/// How the catalogue names what is called so: "Fig." for "figure"; "" for a chapter, section or
+/// appendix, which its number names; nothing where nothing is called so.
+std::optional<std::string> KindOf(std::string word) {
+  static const std::map<std::string, std::string> kKinds{
+      {"fig", "Fig."},   {"figure", "Fig."},   {"tab", "Table"}, {"table", "Table"},
+      {"list", "List."}, {"listing", "List."}, {"lst", "List."}, {"ch", ""},
+      {"chap", ""},      {"chapter", ""},      {"sec", ""},      {"sect", ""},
+      {"section", ""},   {"app", ""},          {"appendix", ""}};
+  word = base::ToLower(word);
+  if (!word.empty() && word.back() == '.') word.pop_back();
+  const auto kind = kKinds.find(word);
+  return kind == kKinds.end() ? std::nullopt : std::optional(kind->second);
+}
+
+/// As the catalogue writes it: "Fig. 6.5" for "figure 6.5", "6.1" for "section 6.1", "A" for
+/// "appendix A".
+std::string AsCatalogued(const std::string& wanted) {
+  const std::vector<std::string> words = Words(wanted);
+  const auto kind = words.size() == 2 ? KindOf(words[0]) : std::nullopt;
+  if (!kind) return wanted;
+  return kind->empty() ? words[1] : *kind + " " + words[1];
+}
+
+/// "Table" and "6.5", as a shell hands over what stands in no quotes, are one name.
+std::vector<std::string> Joined(const std::vector<std::string>& wanted) {
+  std::vector<std::string> names;
+  bool is_open = false;
+  for (const std::string& word : wanted) {
+    if (is_open) {
+      names.back() += " " + word;
+    } else {
+      names.push_back(word);
+    }
+    is_open = !is_open && KindOf(word).has_value();
+  }
+  return names;
+}
+
+/// The item that is called so, else all that lies below that section.
+std::vector<std::string> NamesOf(const Catalogue& catalogue, const std::string& wanted) {
+  std::vector<std::string> names;
+  const std::string catalogued = AsCatalogued(wanted);
+  for (const std::string& each : {wanted, catalogued}) {
+    for (const CatalogueItem& item : catalogue.items) {
+      if (IsWanted(item, base::ToLower(each))) names.push_back(item.name);
+    }
+    if (!names.empty()) return names;
+  }
+  std::set<std::string> known{"all"};
+  for (const CatalogueItem& item : catalogue.items) known.insert({item.section, item.name});
+  const std::vector<std::string> names_known(known.begin(), known.end());
+  constexpr char kLister[] = "hires reproduce --list";
+  const bool has_guess = !base::LikelyNames(catalogued, names_known).empty();
+  throw base::ConfigError(
+      base::UnknownName("table, figure or section", catalogued, names_known, kLister) +
+      (has_guess ? fmt::format("; `{}` lists all", kLister) : ""));
+}
+
+}  // namespace
+
+std::string ToString(const AnswerField& field) { return field.play + ":" + field.pointer; }
+
+std::vector<std::string> NeededBy(const Play& play) {
+  std::vector<std::string> needed;
+  for (const std::string& word : play.command) {
+    for (const std::string& name : PlaceholdersIn(word)) {
+      if (!IsOwn(name)) needed.push_back(PlayIn(name));
+    }
+  }
+  return needed;
+}
+
+Catalogue ReadCatalogue(const std::string& path) {
+  base::ParamReader in = base::ParamReader::FromFile(path);
+  Catalogue catalogue;
+  for (base::ParamReader& play : in.SubList("plays")) catalogue.plays.push_back(ReadPlay(play));
+  for (base::ParamReader& item : in.SubList("items")) catalogue.items.push_back(ReadItem(item));
+  in.RejectUnknownKeys();
+  CheckNames(path, catalogue);
+  CheckPlays(path, catalogue);
+  return catalogue;
+}
+
+std::vector<CatalogueItem> ItemsOf(const Catalogue& catalogue,
+                                   const std::vector<std::string>& wanted) {
+  std::set<std::string> names;
+  for (const std::string& word : Joined(wanted)) {
+    for (const std::string& name : NamesOf(catalogue, word)) names.insert(name);
+  }
+  std::vector<CatalogueItem> items;
+  std::copy_if(catalogue.items.begin(), catalogue.items.end(), std::back_inserter(items),
+               [&](const CatalogueItem& item) { return names.count(item.name) > 0; });
+  return items;
+}
+
+std::vector<Play> PlaysFor(const Catalogue& catalogue, const std::vector<CatalogueItem>& items) {
+  std::vector<Play> order;
+  for (const Play& play : catalogue.plays) {
+    const bool is_shown = std::any_of(items.begin(), items.end(), [&](const CatalogueItem& item) {
+      return std::count(item.plays.begin(), item.plays.end(), play.name) > 0;
+    });
+    if (is_shown) Append(catalogue, play, {}, &order);
+  }
+  return order;
+}
+
+}  // namespace hires::evaluation

@@ -1,0 +1,87 @@
+#include "lab/src/reproduce/play_store.h"
+
+#include <fmt/format.h>
+
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <system_error>
+
+#include "hires/base/error.h"
+#include "hires/base/hash.h"
+#include "hires/base/text.h"
+#include "reports/configuration_hash.h"
+
+namespace hires::cli {
+namespace {
+
+namespace fs = std::filesystem;
+using nlohmann::ordered_json;
+
+void MakeFolder(const std::string& path) {
+  std::error_code error;
+  fs::create_directories(path, error);
+  if (error) {
+    throw base::ConfigError(fmt::format(
+        "{}: cannot be made: {}; name another folder with --results", path, error.message()));
+  }
+}
+
+std::string NoteOf(const std::string& folder) { return folder + "/played.json"; }
+
+}  // namespace
+
+std::string HashOfFile(const std::string& path) {
+  base::Hasher hasher;
+  hasher.Add(base::ReadTextFile(path, std::size_t{1} << 30));
+  return base::HexOf(hasher.value());
+}
+
+PlayStore::PlayStore(Place place) : place_(std::move(place)) { MakeFolder(place_.folder); }
+
+std::string PlayStore::KeyOf(const evaluation::Play& play) {
+  const auto known = keys_.find(play.name);
+  if (known != keys_.end()) return known->second;
+  base::Hasher hasher;
+  hasher.Add(HIRES_VERSION);
+  for (const std::string& word : play.command) hasher.Add(word);
+  for (const std::string& input : play.inputs) hasher.Add(HashOfInput(input));
+  for (const std::string& other : evaluation::NeededBy(play)) hasher.Add(keys_.at(other));
+  return keys_[play.name] = base::HexOf(hasher.value());
+}
+
+std::string PlayStore::HashOfInput(const std::string& input) {
+  const auto known = inputs_.find(input);
+  if (known != inputs_.end()) return known->second;
+  return inputs_[input] = evaluation::InputHash(place_.package, input);
+}
+
+std::string PlayStore::FolderOf(const evaluation::Play& play) {
+  return place_.folder + "/" + play.name + "-" + KeyOf(play);
+}
+
+void PlayStore::MakeRoom(const evaluation::Play& play) { MakeFolder(FolderOf(play)); }
+
+std::optional<PlayStore::Stored> PlayStore::Find(const evaluation::Play& play) {
+  const std::string note = NoteOf(FolderOf(play));
+  if (!fs::exists(note) || !fs::exists(AnswerOf(play))) return std::nullopt;
+  const auto content = ordered_json::parse(base::ReadTextFile(note), nullptr, false);
+  if (!content.is_object() || !content.contains("build") || !content["build"].is_string() ||
+      !content.contains("wall_seconds") || !content["wall_seconds"].is_number()) {
+    throw base::ConfigError(fmt::format(
+        "{}: is broken; wanted build and wall_seconds; delete its folder, and it is played again",
+        note));
+  }
+  return Stored{AnswerOf(play), content["build"], content["wall_seconds"]};
+}
+
+void PlayStore::Keep(const evaluation::Play& play, double seconds) {
+  const ordered_json note{{"play", play.name}, {"build", place_.build}, {"wall_seconds", seconds}};
+  base::ReplaceTextFile(NoteOf(FolderOf(play)), note.dump(1) + "\n");
+}
+
+void PlayStore::Forget(const evaluation::Play& play) {
+  std::error_code ignored;  // what remains is found by MakeFolder or the next play
+  fs::remove_all(FolderOf(play), ignored);
+}
+
+}  // namespace hires::cli

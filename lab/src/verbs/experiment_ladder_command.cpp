@@ -1,0 +1,77 @@
+#include "lab/src/verbs/experiment_ladder_command.h"
+
+#include <CLI/CLI.hpp>
+#include <chrono>
+#include <ctime>
+#include <iostream>
+#include <nlohmann/json.hpp>
+
+#include "lab/src/verbs/experiment_command.h"
+#include "cli/command_line.h"
+#include "cli/crew_display.h"
+#include "cli/whole_number.h"
+#include "lab/src/ladder/ladder.h"
+#include "reports/report_json.h"
+#include "loop/task_loop.h"
+
+namespace hires::cli {
+namespace {
+
+evaluation::LadderClocks ClocksOfThisComputer() {
+  return {[] {
+            const auto now = std::chrono::steady_clock::now().time_since_epoch();
+            return std::chrono::duration<double>(now).count();
+          },
+          [] { return static_cast<double>(std::clock()) / CLOCKS_PER_SEC; }};
+}
+
+std::optional<double> PlayTopple(const loop::LoopSetup& setup, const std::string& package_folder,
+                                 std::uint64_t seed, const std::function<bool()>& cancelled) {
+  loop::LoopOrder order;
+  order.scenario = package_folder + "/config/scenarios/topple.yaml";
+  order.seed = seed;
+  const loop::LoopRun run = loop::PlayTask(setup, order, {}, cancelled);
+  if (cancelled && cancelled()) return std::nullopt;
+  return run.virtual_seconds;
+}
+
+}  // namespace
+
+void AddLadderVerb(CLI::App* experiment, LadderOptions* o) {
+  CLI::App* verb = experiment->add_subcommand(
+      "ladder", "how fast what is simulated: the steps of the dissertation, and ours");
+  verb->add_option("--seconds", o->seconds, "about so long, 90 if not said; more is more exact")
+      ->check(NumberBetween(1.0, 86400.0));
+  verb->add_option("--repeats", o->repeats, "of each measurement, at most; 5 if not said")
+      ->check(NumberBetween(2, 1000));
+  verb->add_option("--seed", o->seed, "of all that is played")->check(WholeNumber());
+  verb->add_option("--json", o->json, "write the numbers to this file");
+  verb->add_option("--threads", o->threads, "that count as all cores; default: one per core")
+      ->check(NumberBetween(1, 256));
+  verb->add_flag("--quiet", o->quiet, "no progress bar");
+  o->verb = verb;
+}
+
+int RunLadderVerb(const LadderOptions& options, const std::string& package_folder,
+                  const std::function<bool()>& cancelled) {
+  if (!options.json.empty()) evaluation::RequireFolderOf(options.json);
+  const loop::LoopSetup loop(package_folder + "/config/loop.yaml");
+  evaluation::LadderOrder order;
+  order.package_folder = package_folder;
+  order.seconds = options.seconds;
+  order.repeats = options.repeats;
+  order.seed = options.seed;
+  order.clocks = ClocksOfThisComputer();
+  order.play_task = [&](std::uint64_t seed) {
+    return PlayTopple(loop, package_folder, seed, cancelled);
+  };
+  const base::Crew crew = MakeCrew(options.threads, options.quiet, cancelled);
+  const auto report = evaluation::ClimbLadder(order, crew);
+  if (crew.on_progress) std::cerr << "\r\033[K";
+  if (!report) return kExitCancelled;
+  std::cout << evaluation::ReportText(*report);
+  if (!options.json.empty()) evaluation::WriteJson(evaluation::ToJson(*report), options.json);
+  return kExitRecommended;
+}
+
+}  // namespace hires::cli

@@ -1,0 +1,78 @@
+#include "lab/src/verbs/experiment_recognition_command.h"
+
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <iostream>
+#include <nlohmann/json.hpp>
+
+#include "lab/src/verbs/experiment_command.h"
+#include "cli/command_line.h"
+#include "cli/crew_display.h"
+#include "cli/report_output.h"
+#include "cli/whole_number.h"
+#include "reports/configuration_hash.h"
+#include "lab/src/recognition/recognition_experiment.h"
+#include "reports/report_json.h"
+#include "reports/timeline.h"
+#include "hires/imagination/imagination_setup.h"
+#include "hires/perception/pcd_file.h"
+#include "hires/robot/load_robot.h"
+
+namespace hires::cli {
+
+void AddRecognitionVerb(CLI::App* experiment, RecognitionOptions* o) {
+  CLI::App* verb = experiment->add_subcommand(
+      "recognition",
+      "how well things on random tables are recognised, over distance, torso and how much of them "
+      "is hidden. Exit codes: 0 all goals are met, 1 bad input, 2 one is missed, undecided or "
+      "without a value, as with few tables (some 250 decide where nothing goes wrong)");
+  verb->add_option("--tables", o->tables, "how many, default 500; each has 1 to 8 things")
+      ->check(NumberBetween(1, 1000000));
+  verb->add_option("--seed", o->seed, "of the first table; each next one has the next")
+      ->check(WholeNumber());
+  verb->add_option("--objects", o->objects, "another catalogue of objects (YAML)");
+  verb->add_option("--config", o->config, "another file instead of config/recogniser.yaml");
+  verb->add_option("--json", o->json, "write the numbers to this file");
+  verb->add_option("--clouds", o->clouds,
+                   "write each table's cloud to this folder, as table_SEED.pcd: something to try "
+                   "`hires recognise` on");
+  verb->add_option("--threads", o->threads, "default: one per core; changes no number but times")
+      ->check(NumberBetween(1, 256));
+  verb->add_flag("--quiet", o->quiet, "no progress bar");
+  o->verb = verb;
+}
+
+int RunRecognitionVerb(const RecognitionOptions& options, const std::string& package_folder,
+                       const std::function<bool()>& cancelled) {
+  if (!options.json.empty()) evaluation::RequireFolderOf(options.json);
+  if (!options.clouds.empty()) evaluation::RequireFolder("--clouds", options.clouds);
+  evaluation::RecognitionOrder order;
+  order.tables = options.tables;
+  order.seed = options.seed;
+  const auto scene = imagination::ReadSetupConfig(package_folder + "/config/scene.yaml");
+  order.robot = robot::LoadAnyRobot(scene.robot);
+  order.recogniser = perception::ReadRecogniserConfig(
+      options.config.empty() ? package_folder + "/config/recogniser.yaml" : options.config,
+      options.objects);
+  if (!options.clouds.empty()) {
+    order.on_cloud = [&](std::uint64_t seed, const perception::PointCloud& cloud) {
+      perception::WritePcd(cloud, fmt::format("{}/table_{}.pcd", options.clouds, seed));
+    };
+  }
+  const std::string files = evaluation::ConfigurationHash(package_folder);
+  const base::Crew crew = MakeCrew(options.threads, options.quiet, cancelled);
+  const auto report = evaluation::TryRecogniser(order, crew);
+  if (crew.on_progress) std::cerr << "\r\033[K";
+  if (!report) return kExitCancelled;
+  std::cout << evaluation::ReportText(*report) << FilesLine(files);
+  if (!options.json.empty()) evaluation::WriteJson(evaluation::ToJson(*report), options.json);
+  SaySaved({options.json});
+  if (evaluation::MeetsGoals(*report)) return kExitRecommended;
+  std::cout << fmt::format("exit code {}, as not all goals are met:\n{}",
+                           static_cast<int>(kExitAllFailed),
+                           evaluation::WhyGoalsAreNotMet(*report));
+  return kExitAllFailed;
+}
+
+}  // namespace hires::cli

@@ -1,0 +1,210 @@
+#include "lab/src/verbs/reproduce_command.h"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cstdlib>
+#include <filesystem>
+#include <iostream>
+#include <map>
+#include <nlohmann/json.hpp>
+
+#include "lab/src/verbs/experiment_command.h"
+#include "lab/src/reproduce/play_runner.h"
+#include "lab/src/reproduce/play_store.h"
+#include "hires/base/error.h"
+#include "hires/base/files/writer_lock.h"
+#include "hires/base/spelling.h"
+#include "hires/base/text.h"
+#include "cli/command_line.h"
+#include "cli/crew_display.h"
+#include "reports/report_table.h"
+#include "lab/src/reproduce/catalogue.h"
+#include "lab/src/reproduce/judge.h"
+
+namespace hires::cli {
+namespace {
+
+using evaluation::CatalogueItem;
+using evaluation::JudgedItem;
+using evaluation::Play;
+using evaluation::Verdict;
+using nlohmann::ordered_json;
+
+std::string CataloguePath(const ReproduceOptions& options, const std::string& package) {
+  return options.catalogue.empty() ? package + "/lab/config/reproduce.yaml" : options.catalogue;
+}
+
+/// As XDG has it, beside the builds.
+std::string ResultsFolder(const ReproduceOptions& options) {
+  if (!options.results.empty()) return options.results;
+  const char* cache = std::getenv("XDG_CACHE_HOME");
+  const char* home = std::getenv("HOME");
+  if (cache != nullptr && *cache != '\0') return std::string(cache) + "/hires/results";
+  if (home != nullptr && *home != '\0') return std::string(home) + "/.cache/hires/results";
+  throw base::ConfigError(
+      "reproduce: neither XDG_CACHE_HOME nor HOME is set; name a folder with --results");
+}
+
+/// A bar that is drawn over itself on a terminal, a line for each play in a log.
+class PlaysDisplay {
+ public:
+  PlaysDisplay() : is_terminal_(isatty(STDERR_FILENO) != 0) {}
+
+  void Show(const PlaysProgress& progress) {
+    const std::string text =
+        fmt::format("{} of {}, {}: {}", progress.number, progress.all, progress.play,
+                    ProgressText(progress.done / (progress.done + progress.left), progress.done));
+    if (is_terminal_) {
+      std::cerr << '\r' << text << "\033[K" << std::flush;
+    } else if (progress.play != told_) {
+      std::cerr << text << std::endl;
+    }
+    told_ = progress.play;
+  }
+  void Clear() const {
+    if (is_terminal_ && !told_.empty()) std::cerr << "\r\033[K";
+  }
+
+ private:
+  bool is_terminal_;
+  std::string told_;
+};
+
+int List(const std::vector<CatalogueItem>& items, const std::vector<Play>& plays,
+         PlayStore* store) {
+  std::vector<std::vector<std::string>> rows{{"section", "what", "title", "plays"}};
+  for (const CatalogueItem& item : items) {
+    rows.push_back({item.section, item.name, item.title, base::Join(item.plays, ", ")});
+  }
+  std::cout << evaluation::FormatTable(rows) << '\n';
+  rows = {{"play", "answer", "time [s]", "command"}};
+  double seconds = 0.0, missing = 0.0;
+  for (const Play& play : plays) {
+    store->KeyOf(play);
+    const auto stored = store->Find(play);
+    seconds += stored ? stored->seconds : play.seconds;
+    if (!stored) missing += play.seconds;
+    std::vector<std::string> words{"hires"};
+    words.insert(words.end(), play.command.begin(), play.command.end());
+    rows.push_back({play.name,
+                    !stored                           ? "missing"
+                    : stored->build == store->build() ? "there"
+                                                      : "there, of another build",
+                    fmt::format("{:.0f}", stored ? stored->seconds : play.seconds),
+                    CommandText(words)});
+  }
+  std::cout << evaluation::FormatTable(rows)
+            << fmt::format("{}, {:.0f} s in all; {:.0f} s are still to be played\n",
+                           base::Counted(plays.size(), "play"), seconds, missing);
+  return kExitRecommended;
+}
+
+std::map<std::string, int> CountVerdicts(const std::vector<JudgedItem>& items) {
+  std::map<std::string, int> counts;
+  for (const JudgedItem& item : items) ++counts[ToString(item.verdict)];
+  return counts;
+}
+
+ordered_json PlaysJson(const PlaysDone& done, const std::string& build) {
+  ordered_json plays = ordered_json::object();
+  for (const auto& [name, answer] : done.answers) {
+    plays[name] = {{"command", answer.command},      {"key", answer.key},
+                   {"build", answer.build},          {"this_build", answer.build == build},
+                   {"wall_seconds", answer.seconds}, {"answer", answer.content}};
+  }
+  return plays;
+}
+
+ordered_json AnswerJson(const std::vector<JudgedItem>& items, const PlaysDone& done,
+                        const std::string& build) {
+  return {{"verdicts", CountVerdicts(items)},
+          {"items", evaluation::ToJson(items)},
+          {"missing", done.missing},
+          {"plays", PlaysJson(done, build)}};
+}
+
+void Print(const std::vector<JudgedItem>& items, const PlaysDone& done, const std::string& build) {
+  std::cout << evaluation::VerdictTable(items) << '\n';
+  std::vector<std::string> counts;
+  for (const auto& [verdict, count] : CountVerdicts(items)) {
+    counts.push_back(fmt::format("{} {}", count, verdict));
+  }
+  std::cout << fmt::format(
+      "{} {}: {}\n", items.size(),
+      items.size() == 1 ? "table, figure or section" : "tables, figures and sections",
+      base::Join(counts, ", "));
+  for (const auto& [play, why] : done.missing) std::cout << fmt::format("{}: {}\n", play, why);
+  const auto old = std::count_if(done.answers.begin(), done.answers.end(),
+                                 [&](const auto& entry) { return entry.second.build != build; });
+  if (old > 0) {
+    std::cout << fmt::format(
+        "by another build of this version, from the same files: {} of {}; --again plays anew\n",
+        old, base::Counted(done.answers.size(), "answer"));
+  }
+}
+
+}  // namespace
+
+void AddReproduceVerb(CLI::App* app, ReproduceOptions* options) {
+  CLI::App* verb = app->add_subcommand(
+      "reproduce", "play the dissertation's experiments and put each result beside the published");
+  verb->add_option("what", options->wanted,
+                   "all, sections (6.1), or tables, figures and listings ('Table 6.5'), as --list "
+                   "names them; default: all");
+  AddReportOptions(verb, &options->report);
+  verb->add_option("--results", options->results,
+                   "folder of the answers; default: hires/results among the user's caches");
+  verb->add_option("--catalogue", options->catalogue,
+                   "another file instead of lab/config/reproduce.yaml");
+  verb->add_flag("--again", options->again, "play anew what has an answer");
+  verb->add_flag("--list", options->is_list, "say what there is and what is played for it");
+  verb->add_flag("--quiet", options->quiet, "no progress");
+  options->verb = verb;
+}
+
+int RunReproduceVerb(const ReproduceOptions& options, const std::string& package_folder,
+                     const std::function<bool()>& cancelled) {
+  const std::string path = CataloguePath(options, package_folder);
+  const evaluation::Catalogue catalogue = evaluation::ReadCatalogue(path);
+  const std::vector<CatalogueItem> items = evaluation::ItemsOf(
+      catalogue, options.wanted.empty() ? std::vector<std::string>{"all"} : options.wanted);
+  PlaysOrder order;
+  order.plays = evaluation::PlaysFor(catalogue, items);
+  order.program = std::filesystem::read_symlink("/proc/self/exe").string();
+  const std::string results = ResultsFolder(options);
+  PlayStore store({results, package_folder, HashOfFile(order.program)});
+  if (options.is_list) return List(items, order.plays, &store);
+  const base::WriterLock lock(results + "/results", "name another folder with --results");
+  CheckReport(options.report);
+  ReportOrigin origin;
+  origin.verb = "reproduce";
+  if (IsWanted(options.report)) origin.inputs = {{"catalogue", path}};
+  RefuseInputs(options.report, origin.inputs);
+  order.package = package_folder;
+  order.again = options.again;
+  order.cancelled = cancelled;
+  PlaysDisplay display;
+  if (!options.quiet) {
+    order.on_progress = [&](const PlaysProgress& progress) { display.Show(progress); };
+  }
+  const PlaysDone done = PlayAll(order, &store);
+  display.Clear();
+  std::map<std::string, ordered_json> answers;
+  for (const auto& [name, answer] : done.answers) answers[name] = answer.content;
+  std::vector<JudgedItem> judged;
+  for (const CatalogueItem& item : items) {
+    judged.push_back(evaluation::Judge(item, answers, done.missing));
+  }
+  Print(judged, done, store.build());
+  if (done.is_cancelled) return kExitCancelled;
+  WriteReport(options.report, origin, AnswerJson(judged, done, store.build()));
+  const bool is_whole = std::none_of(judged.begin(), judged.end(), [](const JudgedItem& item) {
+    return item.verdict == Verdict::kNotPlayed;
+  });
+  return is_whole ? kExitRecommended : kExitNoWorker;
+}
+
+}  // namespace hires::cli

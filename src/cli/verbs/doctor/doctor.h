@@ -1,0 +1,47 @@
+#pragma once
+
+#include <functional>
+#include <string>
+
+#include "cli/report_output.h"
+
+namespace CLI {
+class App;
+}
+
+namespace hires::cli {
+
+struct Backends;
+
+/// `hires doctor --robot`.
+struct RobotDoctorOptions {
+  std::string names;       ///< file; empty: config/robots/pr2_names.yaml
+  std::string profile;     ///< file; empty: config/robots/pr2.yaml
+  std::string navigation;  ///< move_base, own; empty: not decided, so that what the first lacks is
+                           ///< a warning
+  double seconds{3.0};     ///< [s] to listen
+  ReportOptions report;    ///< without --robot, too
+};
+
+/// Looks at a running robot.  @return Exit code.  @throws base::ConfigError.
+using ExamineRobot = std::function<int(const RobotDoctorOptions&)>;
+
+/// What was typed behind `hires doctor`.
+struct DoctorOptions {
+  bool is_robot{false};
+  bool is_without_physics{false};  ///< what the machine has is looked at alone
+  RobotDoctorOptions robot;
+  CLI::App* verb{nullptr};
+};
+
+/// Adds the verb to the program.  @pre `options` outlives `app`.
+void AddDoctorVerb(CLI::App* app, DoctorOptions* options);
+
+/// `hires doctor`: looks at the package's files and the machine, then compares the physics with
+/// closed forms. Prints one line per check with what to do where it failed. With --robot it looks
+/// at a running robot instead.
+/// @return 0 if all passed, else kExitBadInput.
+/// @throws base::ConfigError for --robot where there are no ROS nodes to ask.
+int RunDoctorVerb(const DoctorOptions& options, const Backends& backends);
+
+}  // namespace hires::cli

@@ -1,0 +1,112 @@
+#include "cli/verbs/limits/limits_command.h"
+
+#include <unistd.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <filesystem>
+#include <iostream>
+#include <nlohmann/json.hpp>
+#include <thread>
+
+#include "cli/command_line.h"
+#include "cli/crew_display.h"
+#include "cli/whole_number.h"
+#include "hires/base/process.h"
+#include "hires/base/text.h"
+#include "hires/imagination/client_config.h"
+#include "reports/limits/motion_limits.h"
+#include "reports/report_json.h"
+#include "reports/timeline.h"
+
+namespace hires::cli {
+namespace {
+
+imagination::SetupConfig SetupOf(const LimitsOptions& o, const std::string& package_folder,
+                                 std::string* object) {
+  const std::string scene =
+      o.scene.empty()
+          ? imagination::ReadClientConfig(package_folder + "/config/imagination_client.yaml").scene
+          : o.scene;
+  imagination::SetupConfig setup = imagination::ReadSetupConfig(scene);
+  imagination::OverridePaths({}, o.robot, o.objects, o.uncertainty, &setup);
+  *object = NameOf(o.object, &setup);
+  return setup;
+}
+
+base::Crew CrewOf(const LimitsOptions& o, const std::function<bool()>& cancelled) {
+  base::Crew crew;
+  crew.threads = o.threads > 0
+                     ? o.threads
+                     : static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
+  crew.cancelled = cancelled;
+  if (!o.quiet && isatty(STDERR_FILENO) != 0) {
+    crew.on_progress = [begin = base::SteadyNow()](double fraction, double) {
+      std::cerr << '\r' << ProgressText(fraction, base::SteadyNow() - begin) << "\033[K"
+                << std::flush;
+    };
+  }
+  return crew;
+}
+
+}  // namespace
+
+void AddLimitsVerb(CLI::App* app, LimitsOptions* options) {
+  CLI::App* verb = app->add_subcommand(
+      "limits", "how fast and how suddenly a robot may drive with an object on its tray");
+  options->verb = verb;
+  verb->add_option("--object", options->object,
+                   "on the tray: of the catalogue, or a file (.sdf, .urdf, .yaml)")
+      ->required();
+  verb->add_option("--robot", options->robot, "another robot: profile (.yaml) or URDF (.urdf)");
+  verb->add_option("--max-fall", options->max_fall,
+                   "share of drives that may lose the object; default: 0.01")
+      ->check(NumberBetween(0.001, 0.5));
+  verb->add_option("--objects", options->objects, "another catalogue of objects (YAML)");
+  verb->add_option("--uncertainty", options->uncertainty, "YAML file, or none");
+  verb->add_option("--scene", options->scene, "another scene file instead of config/scene.yaml");
+  verb->add_option("--seed", options->seed, "of all chance; equal seeds give equal answers")
+      ->check(WholeNumber());
+  verb->add_option("--threads", options->threads, "default: one per core; changes no number")
+      ->check(NumberBetween(1, 256));
+  verb->add_option("--check", options->check_truths,
+                   "play so many new truths at each limit, and 10 % above it")
+      ->check(NumberBetween(1, 100000));
+  verb->add_option("--yaml", options->yaml, "write move_base's parameters to this file as well");
+  verb->add_option("--json", options->json, "write all numbers to this file");
+  verb->add_flag("--quiet", options->quiet, "no progress bar");
+}
+
+int RunLimitsVerb(const LimitsOptions& options, const std::string& package_folder,
+                  const std::function<bool()>& cancelled) {
+  for (const std::string& path : {options.json, options.yaml}) {
+    if (!path.empty()) evaluation::RequireFolderOf(path);
+  }
+  evaluation::LimitsRequest request;
+  const imagination::ImaginationSetup setup =
+      imagination::LoadImaginationSetup(SetupOf(options, package_folder, &request.object));
+  request.is_controller_assumed =
+      base::ToLower(std::filesystem::path(options.robot).extension().string()) == ".urdf";
+  request.max_fall = options.max_fall;
+  request.seed = options.seed;
+  request.check_truths = options.check_truths;
+  // Whoever asks reads these while the rest is played.
+  std::cout << evaluation::ClosedFormText(evaluation::ClosedFormLimits(request.object, setup))
+            << '\n'
+            << std::flush;
+  const double begin = base::SteadyNow();
+  auto report = evaluation::FindLimits(request, setup, CrewOf(options, cancelled));
+  if (!options.quiet && isatty(STDERR_FILENO) != 0) std::cerr << "\r\033[K";
+  if (!report) {
+    std::cerr << "hires limits: cancelled; nothing is written\n";
+    return kExitCancelled;
+  }
+  report->wall_seconds = base::SteadyNow() - begin;
+  const std::string yaml = evaluation::LimitsYaml(*report);
+  std::cout << evaluation::LimitsText(*report) << '\n' << yaml;
+  if (!options.yaml.empty()) base::ReplaceTextFile(options.yaml, yaml);
+  if (!options.json.empty()) evaluation::WriteJson(evaluation::ToJson(*report), options.json);
+  return kExitRecommended;
+}
+
+}  // namespace hires::cli

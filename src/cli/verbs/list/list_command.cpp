@@ -1,0 +1,359 @@
+#include "cli/verbs/list/list_command.h"
+
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <functional>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <set>
+
+#include "cli/exit_code.h"
+#include "cli/list_rows.h"
+#include "hires/base/error.h"
+#include "hires/base/param_reader.h"
+#include "hires/base/text.h"
+#include "hires/imagination/client_config.h"
+#include "hires/planning/planning_files.h"
+#include "hires/robot/load_robot.h"
+#include "hires/skills/action_loader.h"
+#include "hires/translation/areas.h"
+#include "hires/world/object_catalogue.h"
+#include "reports/report_json.h"
+#include "sim_robot/scenario.h"
+
+namespace hires::cli {
+namespace {
+
+using nlohmann::ordered_json;
+namespace fs = std::filesystem;
+
+using Rows = ListRows;
+
+/// The files that are listed.
+struct Sources {
+  imagination::SetupConfig setup;
+  std::string domain, package_folder;
+};
+
+double Rounded(double value) { return std::round(value * 1e4) / 1e4; }
+
+std::string KindOf(translation::AreaKind kind) {
+  switch (kind) {
+    case translation::AreaKind::kStanding:
+      return "standing";
+    case translation::AreaKind::kRoom:
+      return "room";
+    case translation::AreaKind::kSeat:
+      return "seat";
+    case translation::AreaKind::kPlacing:
+      return "placing";
+    case translation::AreaKind::kTray:
+      return "tray";
+  }
+  return "";
+}
+
+/// Lower case -> as a file spells it.
+using Spelling = std::map<std::string, std::string>;
+
+void Note(const base::ParamReader& in, Spelling* spelling) {
+  for (const std::string& key : in.Keys()) (*spelling)[base::ToLower(key)] = key;
+}
+
+/// Names in a robot's profile; lookups ignore case, people type what they read.
+Spelling SpellingOf(const std::string& robot) {
+  Spelling spelling;
+  if (base::ToLower(fs::path(robot).extension().string()) == ".urdf") return spelling;
+  base::ParamReader in = base::ParamReader::FromFile(robot);
+  if (in.Has("motion_sets")) Note(in.Sub("motion_sets"), &spelling);
+  if (!in.Has("upper_body")) return spelling;
+  base::ParamReader body = in.Sub("upper_body");
+  base::ParamReader arms = body.Sub("arms");
+  Note(arms, &spelling);
+  for (const std::string& arm : arms.Keys()) Note(arms.Sub(arm).Sub("postures"), &spelling);
+  Note(body.Sub("torso").Sub("postures"), &spelling);
+  return spelling;
+}
+
+/// @param name  lower case
+std::string Spelled(const std::string& name, const Spelling& spelling) {
+  const auto found = spelling.find(name);
+  return found == spelling.end() ? name : found->second;
+}
+
+Rows Areas(const Sources& sources) {
+  const world::World world = world::LoadWorld(sources.setup.world);
+  const robot::Robot robot = robot::LoadAnyRobot(sources.setup.robot);
+  Spelling spelling{world.frame_names.begin(), world.frame_names.end()};
+  spelling.emplace(translation::kTrayArea, "trayArea1");  // as the ontology's knowledge spells it
+  Rows rows;
+  for (const translation::Area& area : translation::AreasOf(world, robot).all) {
+    const Eigen::Vector3d p = area.X_FA.translation;
+    rows.push_back({{"area", Spelled(area.name, spelling)},
+                    {"for", KindOf(area.kind)},
+                    {"frame", area.link.empty() ? "map" : area.link},
+                    {"x", Rounded(p.x())},
+                    {"y", Rounded(p.y())},
+                    {"z", Rounded(p.z())},
+                    {"yaw", Rounded(geometry::YawOf(area.X_FA.rotation))}});
+  }
+  return rows;
+}
+
+Eigen::Vector3d SizeOf(const world::ObjectModel& model) {
+  geometry::Aabb box;
+  for (const geometry::Collision& collision : model.collisions) {
+    box.Include(geometry::BoundsOf(collision.shape, collision.X_BS));
+  }
+  return box.upper - box.lower;
+}
+
+ordered_json ObjectRow(const std::string& instance, const world::ObjectModel& model,
+                       const std::string& from) {
+  const Eigen::Vector3d size = SizeOf(model);
+  return {{"object", instance},
+          {"model", model.name},
+          {"mass", Rounded(model.mass_properties.mass)},
+          {"depth", Rounded(size.x())},
+          {"width", Rounded(size.y())},
+          {"height", Rounded(size.z())},
+          {"from", from}};
+}
+
+Rows Objects(const Sources& sources) {
+  Rows rows;
+  for (const auto& [instance, model] : world::LoadCatalogueModels(sources.setup.objects)) {
+    rows.push_back(ObjectRow(instance, *model, "catalogue"));
+  }
+  const world::World world = world::LoadWorld(sources.setup.world);
+  for (const world::ObjectState& object : world.initial.objects) {
+    rows.push_back(ObjectRow(object.name, *world.ModelOf(object), "world"));
+  }
+  return rows;
+}
+
+/// "object", or "from (area)" where the name does not say the kind.
+std::string Described(const actions::Parameter& parameter) {
+  std::string kind = actions::ToString(parameter.kind);
+  std::replace(kind.begin(), kind.end(), ' ', '_');
+  return parameter.name == kind ? kind : fmt::format("{} ({})", parameter.name, kind);
+}
+
+Rows Actions(const Sources& sources) {
+  Rows rows;
+  const auto set = skills::LoadActionSet(sources.setup.action_libraries);
+  for (const auto& [name, spec] : set->catalogue().specs()) {
+    std::vector<std::string> arguments, failures;
+    for (const actions::Parameter& parameter : spec.parameters) {
+      arguments.push_back(Described(parameter));
+    }
+    for (const base::FailureCode code : spec.failures) failures.push_back(base::ToString(code));
+    rows.push_back({{"action", name},
+                    {"arguments", arguments},
+                    {"moves", spec.detail == actions::Detail::kBase ? "base" : "upper body"},
+                    {"may fail by", failures}});
+  }
+  return rows;
+}
+
+Rows MotionSets(const Sources& sources) {
+  const robot::RobotProfile profile = robot::LoadAnyRobot(sources.setup.robot).profile;
+  const Spelling spelling = SpellingOf(sources.setup.robot);
+  Rows rows;
+  for (const auto& [name, set] : profile.motion_sets) {
+    rows.push_back({{"motion set", Spelled(name, spelling)},
+                    {"default", name == profile.default_motion_set},
+                    {"m/s", set.max_linear_velocity},
+                    {"m/s^2", set.max_linear_acceleration},
+                    {"rad/s", set.max_angular_velocity},
+                    {"rad/s^2", set.max_angular_acceleration}});
+  }
+  return rows;
+}
+
+Rows Postures(const Sources& sources) {
+  const robot::RobotProfile profile = robot::LoadAnyRobot(sources.setup.robot).profile;
+  Rows rows;
+  if (!profile.upper_body) return rows;
+  const Spelling spelling = SpellingOf(sources.setup.robot);
+  for (const auto& [name, height] : profile.upper_body->torso_postures) {
+    rows.push_back({{"posture", Spelled(name, spelling)}, {"of", "torso1"}});
+  }
+  for (const auto& [arm, description] : profile.upper_body->arms) {
+    for (const auto& [name, variants] : description.postures) {
+      rows.push_back({{"posture", Spelled(name, spelling)}, {"of", Spelled(arm, spelling)}});
+    }
+  }
+  return rows;
+}
+
+/// Files of the package with that ending, by name.
+std::vector<fs::path> FilesIn(const Sources& sources, const std::string& folder,
+                              const std::string& ending) {
+  std::vector<fs::path> files;
+  for (const auto& entry : fs::directory_iterator(sources.package_folder + "/" + folder)) {
+    if (entry.path().extension() == ending) files.push_back(entry.path());
+  }
+  std::sort(files.begin(), files.end());
+  return files;
+}
+
+Rows Robots(const Sources& sources) {
+  Rows rows;
+  for (const fs::path& file : FilesIn(sources, "config/robots", ".yaml")) {
+    if (!base::ParamReader::FromFile(file).Has("urdf")) continue;  // names of topics
+    const robot::RobotProfile profile = robot::LoadRobot(file).profile;
+    const Spelling spelling = SpellingOf(file.string());
+    std::vector<std::string> arms, motion_sets;
+    if (profile.upper_body) {
+      for (const auto& [arm, description] : profile.upper_body->arms)
+        arms.push_back(Spelled(arm, spelling));
+    }
+    for (const auto& [name, set] : profile.motion_sets)
+      motion_sets.push_back(Spelled(name, spelling));
+    rows.push_back({{"robot", file.string()},
+                    {"tray", profile.tray_link},
+                    {"arms", arms},
+                    {"motion sets", motion_sets}});
+  }
+  return rows;
+}
+
+Rows Worlds(const Sources& sources) {
+  Rows rows;
+  for (const fs::path& file : FilesIn(sources, "worlds", ".world")) {
+    const world::World world = world::LoadWorld(file);
+    rows.push_back({{"world", file.string()},
+                    {"areas", world.frames.size()},
+                    {"fixed bodies", world.statics.size()},
+                    {"loose objects", world.initial.objects.size()}});
+  }
+  return rows;
+}
+
+Rows Scenarios(const Sources& sources) {
+  Rows rows;
+  for (const fs::path& file : FilesIn(sources, "config/scenarios", ".yaml")) {
+    const evaluation::Scenario scenario = evaluation::ReadScenario(file);
+    rows.push_back({{"scenario", scenario.name},
+                    {"task", scenario.task},
+                    {"objects", scenario.objects.size()},
+                    {"file", file.string()}});
+  }
+  return rows;
+}
+
+Rows Truths(const Sources& sources) {
+  Rows rows;
+  for (const fs::path& file : FilesIn(sources, "config/truths", ".yaml")) {
+    rows.push_back({{"truth", file.stem().string()}, {"file", file.string()}});
+  }
+  return rows;
+}
+
+void NoteTasks(const planning::TaskNetwork& network, std::set<std::string>* names) {
+  for (const planning::TaskItem& item : network.items) {
+    if (item.network.empty()) names->insert(std::string(item.task.Head()));
+    for (const planning::TaskNetwork& inner : item.network) NoteTasks(inner, names);
+  }
+}
+
+std::string ArgumentsOf(const planning::Datum& head) {
+  std::vector<std::string> arguments;
+  for (std::size_t i = 1; i < head.items.size(); ++i) {
+    arguments.push_back(planning::ToString(head.items[i]));
+  }
+  return base::Join(arguments, " ");
+}
+
+/// Tasks with a method; whole ones, of which no other consists, first.
+Rows Tasks(const Sources& sources) {
+  const planning::Domain domain = planning::LoadDomain(sources.domain);
+  std::map<std::string, std::set<std::string>> parents;
+  for (const planning::Method& method : domain.methods) {
+    std::set<std::string> parts;
+    for (const planning::Branch& branch : method.branches) NoteTasks(branch.subtasks, &parts);
+    const std::string name(method.head.Head());
+    for (const std::string& part : parts) {
+      if (part != name) parents[part].insert(name);
+    }
+  }
+  Rows rows;
+  std::set<std::string> seen;
+  for (const planning::Method& method : domain.methods) {
+    const std::string name(method.head.Head());
+    if (!seen.insert(name).second) continue;
+    rows.push_back(
+        {{"task", name}, {"arguments", ArgumentsOf(method.head)}, {"part of", parents[name]}});
+  }
+  std::stable_partition(rows.begin(), rows.end(),
+                        [](const ordered_json& row) { return row["part of"].empty(); });
+  return rows;
+}
+
+const std::map<std::string, std::function<Rows(const Sources&)>>& Listers() {
+  static const std::map<std::string, std::function<Rows(const Sources&)>> listers{
+      {"areas", Areas},       {"objects", Objects},
+      {"actions", Actions},   {"motion_sets", MotionSets},
+      {"postures", Postures}, {"robots", Robots},
+      {"worlds", Worlds},     {"scenarios", Scenarios},
+      {"tasks", Tasks},       {"truths", Truths}};
+  return listers;
+}
+
+std::vector<std::string> Kinds() {
+  std::vector<std::string> kinds;
+  for (const auto& [kind, lister] : Listers()) kinds.push_back(kind);
+  return kinds;
+}
+
+Sources SourcesOf(const ListOptions& o, const std::string& package_folder) {
+  Sources sources;
+  sources.package_folder = package_folder;
+  const auto client =
+      imagination::ReadClientConfig(package_folder + "/config/imagination_client.yaml");
+  sources.setup = imagination::ReadSetupConfig(o.scene.empty() ? client.scene : o.scene);
+  imagination::OverridePaths(o.world, o.robot, o.objects, "", &sources.setup);
+  sources.setup.action_libraries = o.action_libraries;
+  sources.domain = o.domain.empty() ? package_folder + "/config/domains/restaurant.lisp" : o.domain;
+  return sources;
+}
+
+}  // namespace
+
+void AddListVerb(CLI::App* app, ListOptions* o) {
+  CLI::App* verb =
+      app->add_subcommand("list", "names that other verbs take: " + base::Join(Kinds(), ", "));
+  verb->add_option("what", o->what, base::Join(Kinds(), ", "));
+  verb->add_option("--world", o->world, "another SDF world: its areas and objects");
+  verb->add_option("--robot", o->robot,
+                   "another robot, profile (.yaml) or URDF: its tray, motion sets and postures");
+  verb->add_option("--objects", o->objects, "another catalogue of objects (YAML)");
+  verb->add_option("--scene", o->scene, "another scene file instead of config/scene.yaml");
+  verb->add_option("--actions", o->action_libraries, "library with more actions (.so)")
+      ->allow_extra_args(false);
+  verb->add_option("--domain", o->domain,
+                   "another planning domain: its tasks; default: the restaurant's");
+  verb->add_option("--json", o->json, "write the list to this file as well; - : print it instead");
+  o->verb = verb;
+}
+
+int RunListVerb(const ListOptions& options, const std::string& package_folder) {
+  if (options.what.empty()) {
+    throw base::ConfigError(
+        fmt::format("list: nothing came, wanted one of '{}'", base::Join(Kinds(), "', '")));
+  }
+  const auto lister = Listers().find(options.what);
+  if (lister == Listers().end()) {
+    throw base::ConfigError(base::UnknownName("list", options.what, Kinds()));
+  }
+  if (!options.json.empty() && options.json != "-") evaluation::RequireFolderOf(options.json);
+  PrintList(options.what, lister->second(SourcesOf(options, package_folder)), options.json);
+  return kExitRecommended;
+}
+
+}  // namespace hires::cli

@@ -1,0 +1,162 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "hires/base/hash.h"
+#include "reports/limits/motion_limits.h"
+#include "reports/report_table.h"
+
+// What was found, for people and for machines.
+namespace hires::evaluation {
+namespace {
+
+/// Rounded down: never more than what was borne.
+double Floored(double value, double scale) { return std::floor(value * scale + 1e-9) / scale; }
+
+std::string Amount(double value, const MotionBounds& limit) {
+  if (std::isinf(value)) return "-";
+  if (limit.motion == "together") {
+    return fmt::format("{:.0f} % {}", 100.0 * Floored(value, 1e2), limit.unit);
+  }
+  return fmt::format("{:.3f} {}", Floored(value, 1e3), limit.unit);
+}
+
+/// "3 and 41", or "3" where the base cannot do more.
+std::string Falls(const LimitCheck& check) {
+  return check.falls_above ? fmt::format("{} and {}", check.falls_at, *check.falls_above)
+                           : fmt::format("{}", check.falls_at);
+}
+
+/// The planner of a base that steers like a car; it turns less sharply where it drives slowly.
+std::string CarYaml(double speed, double turning, double linear, double angular, double radius) {
+  return fmt::format(
+      "TebLocalPlannerROS:\n  max_vel_x: {0:g}\n  max_vel_x_backwards: {0:g}\n  max_vel_y: 0\n"
+      "  max_vel_theta: {1:g}\n  acc_lim_x: {2:g}\n  acc_lim_theta: {3:g}\n"
+      "  min_turning_radius: {4:g}\n",
+      speed, turning, linear, angular, radius);
+}
+
+nlohmann::ordered_json OrNull(double value) {
+  return std::isinf(value) ? nlohmann::ordered_json() : nlohmann::ordered_json(value);
+}
+
+}  // namespace
+
+std::string ClosedFormText(const std::vector<MotionBounds>& bounds) {
+  std::vector<std::vector<std::string>> rows{{"motion", "closed form", "robot's own", "why"}};
+  for (const MotionBounds& motion : bounds) {
+    rows.push_back({motion.motion, Amount(motion.closed_form, motion),
+                    Amount(motion.robots_own, motion), motion.stated});
+  }
+  return "closed forms: the model as it is, on an even floor and a base that follows exactly\n" +
+         FormatTable(rows);
+}
+
+std::string LimitsText(const LimitsReport& report) {
+  const int num_checked = report.request.check_truths;
+  std::vector<std::vector<std::string>> rows{{"motion", "limit", "robot's own", "closed form"}};
+  if (num_checked > 0) rows[0].push_back(fmt::format("falls of {} new, 10 % above", num_checked));
+  for (const MotionLimit& limit : report.limits) {
+    const bool is_share = limit.motion == "together";
+    rows.push_back({limit.motion, Amount(limit.value, limit),
+                    is_share ? "-" : Amount(limit.robots_own, limit),
+                    Amount(limit.closed_form, limit)});
+    if (limit.check) rows.back().push_back(Falls(*limit.check));
+  }
+  std::string text =
+      fmt::format("simulated, {} truths for each motion\n{}", report.num_truths, FormatTable(rows));
+  text += fmt::format(
+      "\nAt each limit {} falls in none of {} simulated truths: at least {:g} % keep it (95 % "
+      "confidence, for each motion).\n"
+      "speed, turning: from where the base may stop by itself, as when commands cease. together: "
+      "on an arc, speeding up, then braking, or left without commands.\n"
+      "truths: same (the uncertainty that imagination has: {}); empty floor; {}.\n",
+      report.request.object, report.num_truths, 100.0 * (1.0 - report.request.max_fall),
+      report.uncertainty,
+      report.num_directions > 1
+          ? fmt::format("driving into {} directions in turn", report.num_directions)
+          : "driving forward");
+  if (report.request.is_controller_assumed) {
+    text +=
+        "robot's own: ASSUMED, a URDF does not tell how a base is controlled; a profile does "
+        "(config/robots/cart.yaml is one).\n";
+  }
+  if (report.wall_seconds > 0.0) {
+    text += fmt::format("{:.0f} s played in {:.1f} s, {:.0f} times as fast as real time\n",
+                        report.simulated_seconds, report.wall_seconds,
+                        report.simulated_seconds / report.wall_seconds);
+  }
+  return text;
+}
+
+std::string LimitsYaml(const LimitsReport& report) {
+  const double share = report.Of("together").value;
+  const auto part = [&](double value) { return Floored(share * value, 1e3); };
+  const double speed = part(report.Of("speed").value);
+  double linear = part(std::min(report.Of("acceleration").value, report.Of("deceleration").value));
+  // The local planner's limit is one of each axis: both together are sqrt(2) times as much.
+  if (report.is_omnidirectional) linear = Floored(linear / std::sqrt(2.0), 1e3);
+  std::string text = fmt::format(
+      "# {} on the tray of {}: in simulation at least {:g} % of drives keep it (95 % confidence),\n"
+      "# uncertainty {}, seed {}. For controller_frequency: {:g}.",
+      report.request.object, report.robot, 100.0 * (1.0 - report.request.max_fall),
+      report.uncertainty, report.request.seed, 1.0 / report.request.command_period);
+  text +=
+      report.min_turning_radius > 0.0
+          ? "\n"
+          : " Before Noetic the keys are\n"
+            "# max_trans_vel, max_rot_vel, acc_lim_th. min_vel_trans and min_vel_theta must not "
+            "be larger.\n";
+  if (report.request.is_controller_assumed) text += "# The base's controller is ASSUMED.\n";
+  if (report.min_turning_radius > 0.0) {
+    return text + CarYaml(speed, part(report.Of("turning").value), linear,
+                          part(report.own_angular_acceleration), report.min_turning_radius);
+  }
+  const double sideways = report.is_omnidirectional ? speed : 0.0;
+  return text +
+         fmt::format(
+             "DWAPlannerROS:\n  max_vel_trans: {0:g}\n  max_vel_x: {0:g}\n  max_vel_y: {1:g}\n"
+             "  min_vel_y: {2:g}\n  max_vel_theta: {3:g}\n  acc_lim_x: {4:g}\n  acc_lim_y: {5:g}\n"
+             "  acc_lim_theta: {6:g}\n",
+             speed, sideways, sideways > 0.0 ? -sideways : 0.0, part(report.Of("turning").value),
+             linear, report.is_omnidirectional ? linear : 0.0,
+             part(report.own_angular_acceleration));
+}
+
+nlohmann::ordered_json ToJson(const LimitsReport& report) {
+  nlohmann::ordered_json limits = nlohmann::ordered_json::array();
+  for (const MotionLimit& limit : report.limits) {
+    limits.push_back({{"motion", limit.motion},
+                      {"unit", limit.motion == "together" ? "share" : limit.unit},
+                      {"limit", limit.value},
+                      {"robots_own", limit.robots_own},
+                      {"closed_form", OrNull(limit.closed_form)},
+                      {"closed_form_states", limit.stated}});
+    if (!limit.check) continue;
+    limits.back()["check_falls"] = limit.check->falls_at;
+    if (limit.check->falls_above) limits.back()["check_falls_above"] = *limit.check->falls_above;
+  }
+  return {{"object", report.request.object},
+          {"model", report.model},
+          {"robot", report.robot},
+          {"controller_assumed", report.request.is_controller_assumed},
+          {"directions", report.num_directions},
+          {"own_angular_acceleration", report.own_angular_acceleration},
+          {"max_fall", report.request.max_fall},
+          {"confidence", 0.95},
+          {"seed", report.request.seed},
+          {"command_period_s", report.request.command_period},
+          {"truths", report.num_truths},
+          {"falls", 0},
+          {"check_truths", report.request.check_truths},
+          {"uncertainty", report.uncertainty},
+          {"world_hash", base::HexOf(report.world_hash)},
+          {"robot_hash", base::HexOf(report.robot_hash)},
+          {"physics_hash", base::HexOf(report.physics_hash)},
+          {"simulated_s", report.simulated_seconds},
+          {"limits", limits}};
+}
+
+}  // namespace hires::evaluation

@@ -1,0 +1,166 @@
+#include "reports/limits/load_drive.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "hires/base/error.h"
+#include "hires/base/rng.h"
+#include "hires/imagination/uncertainty.h"
+#include "hires/simulation/fall_watch.h"
+#include "hires/simulation/robot_simulator.h"
+
+namespace hires::evaluation {
+namespace {
+
+using geometry::Twist2;
+
+constexpr double kQuiet = 0.6;     // [s] that the load must not have shaken ...
+constexpr double kStill = 0.004;   // [rad] ... by more than this
+constexpr double kFollows = 0.05;  // [m/s], [rad/s] and ...
+constexpr double kSlips =
+    0.1;  // ... of what is commanded: so far off a base follows it, as wheels slip
+constexpr double kLongest = 60.0;  // [s] for the base to come to what is commanded
+enum DriveStreams : std::uint64_t { kDriveTruth, kDriveSimulator };
+
+/// The next command on the way to a velocity.
+Twist2 Approach(const Twist2& from, const DriveStep& step, double period) {
+  const double dx = step.V_B.vx - from.vx, dy = step.V_B.vy - from.vy;
+  const double distance = std::hypot(dx, dy), most = step.linear_rate * period;
+  const double share = distance > most ? most / distance : 1.0;
+  const double turn = step.angular_rate * period;
+  return {from.vx + share * dx, from.vy + share * dy,
+          from.wz + std::clamp(step.V_B.wz - from.wz, -turn, turn)};
+}
+
+bool AreEqual(const Twist2& a, const Twist2& b) {
+  return a.vx == b.vx && a.vy == b.vy && a.wz == b.wz;
+}
+
+class Driver {
+ public:
+  Driver(const DriveStage& stage, const LoadDrive& drive, simulation::RobotSimulator* simulator)
+      : stage_(stage),
+        drive_(drive),
+        simulator_(*simulator),
+        watch_(stage.setup->standing),
+        steps_per_look_(world::StepsPerLook(simulator->time_step())) {}
+
+  DriveOutcome Play() {
+    Advance(stage_.setup->rollout.settling_time, Twist2{});
+    for (const DriveStep& step : drive_) Follow(step);
+    last_shake_ = last_move_ = simulator_.time();  // what comes now is not known to be quiet
+    const bool is_silent = !drive_.empty() && drive_.back().is_silent;
+    while (!IsOver()) Command(is_silent);
+    return {watch_.detector().falls() > 0, simulator_.time()};
+  }
+
+ private:
+  void Follow(const DriveStep& step) {
+    if (step.is_silent) {
+      V_B_ = {};
+      return;
+    }
+    while (!AreEqual(V_B_, step.V_B) && !is_down()) {
+      V_B_ = Approach(V_B_, step, stage_.command_period);
+      Command(false);
+    }
+    AwaitVelocity();
+    const double end = simulator_.time() + step.hold;
+    while (simulator_.time() < end && !is_down()) Command(false);
+  }
+
+  /// The controller may be slower than what it is told.
+  void AwaitVelocity() {
+    const double begin = simulator_.time();
+    while (!is_down() && !FollowsCommand()) {
+      Command(false);
+      if (simulator_.time() - begin < kLongest) continue;
+      throw base::ConfigError(
+          fmt::format("the base does not come to ({:.2f}, {:.2f}) m/s and {:.2f} rad/s within "
+                      "{:.0f} s, wanted a "
+                      "controller that does; see base_controller in the robot's profile",
+                      V_B_.vx, V_B_.vy, V_B_.wz, kLongest));
+    }
+  }
+
+  bool FollowsCommand() const {
+    const Twist2& V = simulator_.base().V_B;
+    return std::hypot(V.vx - V_B_.vx, V.vy - V_B_.vy) <
+               kFollows + kSlips * std::hypot(V_B_.vx, V_B_.vy) &&
+           std::abs(V.wz - V_B_.wz) < kFollows + kSlips * std::abs(V_B_.wz);
+  }
+
+  /// For one period of commands.
+  void Command(bool is_silent) {
+    Advance(stage_.command_period, is_silent ? std::nullopt : std::optional<Twist2>(V_B_));
+  }
+
+  /// A velocity is repeated as often as a base's controller wants to hear it.
+  void Advance(double duration, const std::optional<Twist2>& V) {
+    const long steps = std::lround(duration / simulator_.time_step());
+    for (long i = 0; i < steps; ++i) {
+      if (V) {
+        robot::Command command;
+        command.base_velocity = *V;
+        simulator_.Send(command);
+      }
+      simulator_.Step();
+      if (++steps_ % steps_per_look_ == 0) Look();
+    }
+  }
+
+  void Look() {
+    watch_.Look(simulator_, 0);
+    if (geometry::TiltOf(simulator_.PoseOf(0).rotation) > kStill) {
+      last_shake_ = simulator_.time();
+    }
+    if (!FollowsCommand()) last_move_ = simulator_.time();
+  }
+
+  bool is_down() const { return watch_.detector().falls() > 0; }
+  /// Once the base does as told nothing is added to what shakes: `aftermath` shows what becomes of
+  /// it.
+  bool IsOver() const {
+    const double quiet = simulator_.time() - std::max(last_shake_, last_move_);
+    const double done = simulator_.time() - last_move_;
+    return is_down() || quiet > kQuiet || done > kQuiet + stage_.setup->rollout.aftermath;
+  }
+
+  const DriveStage& stage_;
+  const LoadDrive& drive_;
+  simulation::RobotSimulator& simulator_;
+  simulation::FallWatch watch_;
+  const long steps_per_look_;
+  long steps_{0};
+  Twist2 V_B_;              // the last that was commanded
+  double last_shake_{0.0};  // [s] of the load
+  double last_move_{0.0};   // [s] that the base was on its way to V_B_
+};
+
+}  // namespace
+
+DriveStage MakeDriveStage(const imagination::ImaginationSetup& setup, const std::string& object,
+                          double command_period) {
+  DriveStage stage;
+  stage.setup = &setup;
+  world::World floor = setup.scene->world;
+  floor.statics.clear();
+  stage.scene = simulation::MakeScene(std::move(floor), setup.scene->robot, setup.scene->memory,
+                                      setup.scene->sight);
+  stage.start = imagination::StartOnTray(setup, {}, {object});
+  stage.command_period = command_period;
+  return stage;
+}
+
+DriveOutcome PlayDrive(const DriveStage& stage, const LoadDrive& drive, const base::Rng& rng) {
+  const simulation::Variation truth =
+      imagination::SampleVariation(*stage.setup->uncertainty, rng.Fork(kDriveTruth));
+  simulation::RobotSimulator simulator(stage.scene, truth, stage.start.world, stage.start.robot,
+                                       rng.Fork(kDriveSimulator), stage.setup->physics,
+                                       simulation::LevelOfDetail::kTray);
+  return Driver(stage, drive, &simulator).Play();
+}
+
+}  // namespace hires::evaluation

@@ -1,0 +1,299 @@
+#include "reports/limits/motion_limits.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <numeric>
+#include <utility>
+
+#include "base/parallel.h"
+#include "hires/base/check.h"
+#include "hires/base/error.h"
+#include "hires/base/hash.h"
+#include "hires/base/rng.h"
+#include "hires/geometry/angles.h"
+#include "reports/limits/load_drive.h"
+
+namespace hires::evaluation {
+namespace {
+
+using geometry::Twist2;
+
+constexpr double kConfidence = 0.95;
+constexpr double kStep = 0.97;        // of the scale of values
+constexpr int kLastStep = 112;        // a 30th of the robot's own limit
+constexpr double kAbove = 1.1;        // times a limit, where it is checked
+constexpr int kFewTruths = 32;        // tell about where the limit lies
+constexpr double kGently = 0.5;       // [m/s^2] nothing shakes
+constexpr double kCruise = 0.5;       // [s]
+constexpr double kTurningTime = 1.0;  // [s] at full rate
+
+const DriveStep kSilence{{}, 0.0, 0.0, 0.0, true};
+
+double ValueAt(double top, int step) { return top * std::pow(kStep, step); }
+
+/// Which of the truths lose the load at a value; empty optional: cancelled.
+using FallenAt =
+    std::function<std::optional<std::vector<int>>(double value, const std::vector<int>& truths)>;
+
+/// The search along the scale: a truth that bears a value bears every smaller one.
+class Search {
+ public:
+  Search(double top, int num_truths, FallenAt fallen_at)
+      : top_(top), all_(num_truths), fallen_at_(std::move(fallen_at)) {
+    std::iota(all_.begin(), all_.end(), 0);
+  }
+
+  /// The first step at which no truth loses the load; kLastStep + 1: there is none.
+  /// @return nothing when cancelled.
+  std::optional<int> Run() {
+    const std::vector<int> few(all_.begin(),
+                               all_.begin() + std::min<std::size_t>(kFewTruths, all_.size()));
+    const auto first = FirstBorneBy(few, 0);
+    if (!first || *first > kLastStep) return first;
+    auto step = FirstBorneBy(all_, *first);
+    // Should a truth have lost at less what it kept at more, the scale is gone down further.
+    while (step && *step <= kLastStep && *step > *first) {
+      const auto fallen = fallen_at_(ValueAt(top_, *step), all_);
+      if (!fallen) return std::nullopt;
+      if (fallen->empty()) break;
+      ++*step;
+    }
+    return step;
+  }
+
+ private:
+  /// By halving, with the truths that have fallen so far alone.
+  std::optional<int> FirstBorneBy(const std::vector<int>& truths, int first) const {
+    auto fallen = fallen_at_(ValueAt(top_, first), truths);
+    if (!fallen || fallen->empty()) return fallen ? std::optional<int>(first) : std::nullopt;
+    int falls = first, bears = kLastStep + 1;
+    while (bears - falls > 1) {
+      const int middle = (falls + bears) / 2;
+      auto still = fallen_at_(ValueAt(top_, middle), *fallen);
+      if (!still) return std::nullopt;
+      if (still->empty()) {
+        bears = middle;
+      } else {
+        falls = middle;
+        fallen = std::move(still);
+      }
+    }
+    return bears;
+  }
+
+  const double top_;
+  std::vector<int> all_;
+  FallenAt fallen_at_;
+};
+
+/// How drives with a value look. The load has to bear each of them.
+using Drives = std::function<std::vector<LoadDrive>(double value, double direction)>;
+
+/// A motion to look at.
+struct Motion : MotionBounds {
+  Drives drives;
+};
+
+Twist2 Along(double direction, double speed, double turning = 0.0) {
+  return {speed * std::cos(direction), speed * std::sin(direction), turning};
+}
+
+class LimitFinder {
+ public:
+  LimitFinder(const LimitsRequest& request, const imagination::ImaginationSetup& setup,
+              const base::Crew& crew)
+      : request_(request),
+        setup_(setup),
+        crew_(crew),
+        controller_(setup.scene->robot.profile.base_controller),
+        bounds_(ClosedFormLimits(request.object, setup)),
+        stage_(MakeDriveStage(setup, request.object, request.command_period)) {}
+
+  std::optional<LimitsReport> Find() {
+    report_.request = request_;
+    report_.model = setup_.scene->world.RequireModel(setup_.ModelOf(request_.object))->name;
+    report_.robot = setup_.scene->robot.model.name;
+    report_.uncertainty =
+        setup_.uncertainty->quantities.empty() ? "none" : base::HexOf(setup_.uncertainty->hash);
+    report_.num_truths = NumTruths(request_.max_fall);
+    report_.world_hash = setup_.world_hash;
+    report_.robot_hash = setup_.robot_hash;
+    report_.physics_hash = setup_.physics_hash;
+    report_.is_omnidirectional = controller_.drive == robot::Drive::kOmnidirectional;
+    report_.num_directions = report_.is_omnidirectional ? kDirections : 1;
+    report_.min_turning_radius = controller_.min_turning_radius;
+    report_.own_angular_acceleration = controller_.limits.max_angular_acceleration;
+    for (const Motion& motion : Motions()) {
+      if (!Look(motion)) return std::nullopt;
+    }
+    return report_;
+  }
+
+ private:
+  std::vector<Motion> Motions() const {
+    MotionBounds together{"together", "of each", 1.0, std::numeric_limits<double>::infinity(), {}};
+    return {{bounds_.at(0), SpeedDrives()},
+            {bounds_.at(1), AccelerationDrives()},
+            {bounds_.at(2), DecelerationDrives()},
+            {bounds_.at(3), TurningDrives()},
+            {std::move(together), TogetherDrives()}};
+  }
+
+  /// @return false when cancelled.
+  bool Look(const Motion& motion) {
+    const auto fallen_at = [&](double value, const std::vector<int>& truths) {
+      return FallenAmong(motion, value, truths);
+    };
+    const auto step = Search(motion.robots_own, report_.num_truths, fallen_at).Run();
+    if (!step) return false;
+    const double least = ValueAt(motion.robots_own, kLastStep);
+    if (*step > kLastStep) {
+      throw base::ConfigError(fmt::format(
+          "object '{}' falls from the tray of '{}' at a {} of {:.3g} {} already, wanted one that "
+          "can "
+          "be carried; put it elsewhere (tray: in the profile) or allow more with --max-fall",
+          request_.object, setup_.scene->robot.model.name, motion.motion, least, motion.unit));
+    }
+    const double value = ValueAt(motion.robots_own, *step);
+    MotionLimit limit{motion, value, std::nullopt};
+    if (request_.check_truths > 0) {
+      limit.check = Check(motion, value);
+      if (!limit.check) return false;
+    }
+    report_.limits.push_back(std::move(limit));
+    return true;
+  }
+
+  /// With truths that the search has not seen.
+  std::optional<LimitCheck> Check(const Motion& motion, double value) {
+    std::vector<int> truths(request_.check_truths);
+    std::iota(truths.begin(), truths.end(), report_.num_truths);
+    const auto at = FallenAmong(motion, value, truths);
+    if (!at) return std::nullopt;
+    LimitCheck check{static_cast<int>(at->size()), std::nullopt};
+    if (kAbove * value > motion.robots_own) return check;
+    const auto above = FallenAmong(motion, kAbove * value, truths);
+    if (!above) return std::nullopt;
+    check.falls_above = static_cast<int>(above->size());
+    return check;
+  }
+
+  std::optional<std::vector<int>> FallenAmong(const Motion& motion, double value,
+                                              const std::vector<int>& truths) {
+    std::vector<DriveOutcome> outcomes(truths.size());
+    const int num_tasks = static_cast<int>(truths.size());
+    const auto work = [&](int task, const base::Advance& advance) {
+      const int truth = truths[task];
+      const double direction =
+          2.0 * geometry::kPi * (truth % report_.num_directions) / report_.num_directions;
+      outcomes[task] = PlayAll(motion.drives(value, direction),
+                               base::Rng(request_.seed)
+                                   .Fork(static_cast<std::uint64_t>(report_.limits.size()))
+                                   .Fork(static_cast<std::uint64_t>(truth)));
+      advance(1.0);
+    };
+    base::Crew crew = crew_;
+    crew.on_progress = nullptr;
+    if (!base::DoInParallel(num_tasks, num_tasks, crew, work)) return std::nullopt;
+    std::vector<int> fallen;
+    for (int i = 0; i < num_tasks; ++i) {
+      report_.simulated_seconds += outcomes[i].simulated;
+      if (outcomes[i].fell) fallen.push_back(truths[i]);
+    }
+    if (crew_.on_progress) {
+      crew_.on_progress(static_cast<double>(report_.limits.size()) / kNumMotions, 0.0);
+    }
+    return fallen;
+  }
+
+  /// In one truth, until a drive loses the load.
+  DriveOutcome PlayAll(const std::vector<LoadDrive>& drives, const base::Rng& rng) const {
+    DriveOutcome all;
+    for (const LoadDrive& drive : drives) {
+      const DriveOutcome one = PlayDrive(stage_, drive, rng);
+      all.simulated += one.simulated;
+      all.fell = one.fell;
+      if (all.fell) break;
+    }
+    return all;
+  }
+
+  double gently() const { return std::min(kGently, controller_.limits.max_linear_acceleration); }
+  double sudden() const { return controller_.limits.max_angular_acceleration; }
+
+  /// Driven gently up to it; then commands cease, and the controller's time-out stops the base.
+  Drives SpeedDrives() const {
+    return [gently = gently()](double v, double direction) -> std::vector<LoadDrive> {
+      return {{{Along(direction, v), gently, 0.0, kCruise}, kSilence}};
+    };
+  }
+
+  Drives AccelerationDrives() const {
+    return [this](double a, double direction) -> std::vector<LoadDrive> {
+      return {{{Along(direction, Found("speed")), a, 0.0, kCruise}}};
+    };
+  }
+
+  Drives DecelerationDrives() const {
+    return [this, gently = gently()](double a, double direction) -> std::vector<LoadDrive> {
+      return {{{Along(direction, Found("speed")), gently, 0.0, kCruise}, {{}, a, 0.0, 0.0}}};
+    };
+  }
+
+  /// On the spot, or round the smallest circle of a car, as suddenly as the controller allows; then
+  /// commands cease.
+  Drives TurningDrives() const {
+    return [sudden = sudden(), radius = controller_.min_turning_radius](
+               double w, double) -> std::vector<LoadDrive> {
+      return {{{{radius * w, 0.0, w}, radius * sudden, sudden, kTurningTime}, kSilence}};
+    };
+  }
+
+  /// All at once, on an arc: speeding up, and braking hard, or left without commands.
+  Drives TogetherDrives() const {
+    return [this, sudden = sudden()](double share, double direction) -> std::vector<LoadDrive> {
+      const DriveStep up{Along(direction, share * Found("speed"), share * Found("turning")),
+                         share * Found("acceleration"), share * sudden, kCruise};
+      return {{up, {{}, share * Found("deceleration"), share * sudden, 0.0}}, {up, kSilence}};
+    };
+  }
+
+  double Found(const std::string& motion) const { return report_.Of(motion).value; }
+
+  static constexpr int kDirections = 8;
+  static constexpr int kNumMotions = 5;
+
+  const LimitsRequest& request_;
+  const imagination::ImaginationSetup& setup_;
+  const base::Crew& crew_;
+  const robot::BaseControllerParams& controller_;
+  const std::vector<MotionBounds> bounds_;
+  const DriveStage stage_;
+  LimitsReport report_;
+};
+
+}  // namespace
+
+const MotionLimit& LimitsReport::Of(const std::string& motion) const {
+  const auto found = std::find_if(limits.begin(), limits.end(),
+                                  [&](const MotionLimit& limit) { return limit.motion == motion; });
+  HIRES_CHECK(found != limits.end(), "limits are looked for in order");
+  return *found;
+}
+
+int NumTruths(double max_fall) {
+  HIRES_CHECK(max_fall > 0.0 && max_fall < 1.0, "a share lies between 0 and 1");
+  return static_cast<int>(std::ceil(std::log(1.0 - kConfidence) / std::log1p(-max_fall)));
+}
+
+std::optional<LimitsReport> FindLimits(const LimitsRequest& request,
+                                       const imagination::ImaginationSetup& setup,
+                                       const base::Crew& crew) {
+  return LimitFinder(request, setup, crew).Find();
+}
+
+}  // namespace hires::evaluation

@@ -1,0 +1,97 @@
+#pragma once
+
+#include <cstdint>
+#include <nlohmann/json_fwd.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "base/parallel.h"
+#include "hires/imagination/imagination_setup.h"
+
+// How fast, how suddenly and how sharply a robot may drive so that what stands on its tray stays
+// there. docs/notes_limits.md says how it is found and what it was compared with.
+namespace hires::evaluation {
+
+/// What is looked for.
+struct LimitsRequest {
+  std::string object;                 ///< on the tray: an instance of the catalogue, or a model
+  bool is_controller_assumed{false};  ///< the robot came without a profile
+  double max_fall{0.01};              ///< share of drives that may lose it, in (0, 1)
+  double command_period{0.1};         ///< [s] between two velocities that a local planner commands
+  std::uint64_t seed{1};
+  int check_truths{0};  ///< new ones to play at each limit, and 10 % above
+};
+
+/// How often new truths lose the load.
+struct LimitCheck {
+  int falls_at{0};                 ///< at the limit
+  std::optional<int> falls_above;  ///< at 1.1 times the limit, where the base can do that
+};
+
+/// What is known of a motion before anything is played.
+struct MotionBounds {
+  std::string motion;       ///< speed, acceleration, deceleration, turning, together
+  std::string unit;         ///< "m/s"; of `together` none: it is a share of the others
+  double robots_own{0.0};   ///< limit of the base's controller; nothing above is looked at
+  double closed_form{0.0};  ///< for the model as it is, on an even floor; infinite: no limit
+  std::string stated;       ///< what the closed form speaks of: "tips", "slides", ...
+};
+
+/// One motion, as far as it may go.
+struct MotionLimit : MotionBounds {
+  double value{0.0};  ///< largest on a scale of steps of 3 % at which nothing fell
+  std::optional<LimitCheck> check;
+};
+
+/// What was found.
+struct LimitsReport {
+  LimitsRequest request;
+  std::string model;  ///< of the object
+  std::string robot;
+  std::string uncertainty;          ///< "none", or hash of what was drawn from
+  int num_truths{0};                ///< at none of them it falls below the limits
+  std::vector<MotionLimit> limits;  ///< the last one is `together`
+  std::uint64_t world_hash{0}, robot_hash{0}, physics_hash{0};
+  bool is_omnidirectional{false};
+  int num_directions{1};  ///< of driving, evenly around; each truth drives into one of them
+  double min_turning_radius{0.0};        ///< [m] of a car-like base; 0: it turns on the spot
+  double own_angular_acceleration{0.0};  ///< [rad/s^2] at which the base begins and ends to turn
+  double simulated_seconds{0.0};
+  double wall_seconds{0.0};  ///< set by who asked; 0: unknown
+
+  const MotionLimit& Of(const std::string& motion) const;
+};
+
+/// How many truths of which none may lose the load: the smallest n with (1 - max_fall)^n <= 0.05.
+/// The largest value that all n bear is then, with 95 % confidence, borne by at least 1 - max_fall
+/// of all truths (of the mix of directions that is played), whatever they are distributed like
+/// [Wilks 1941, Ann. Math. Stat. 12:91-96]. Each motion has truths of its own.
+int NumTruths(double max_fall);
+
+/// Closed forms of speed, acceleration, deceleration and turning, in this order: at once, as
+/// nothing is played.
+/// @throws base::ConfigError: no such object, a robot without a tray, an object that cannot stand,
+/// a controller that moves nothing.
+std::vector<MotionBounds> ClosedFormLimits(const std::string& object,
+                                           const imagination::ImaginationSetup& setup);
+
+/// Looks for limits of all motions. The same bits for any number of threads.
+/// @param setup  whose world only lends its gravity: the floor is empty.
+/// @return nothing when it was cancelled.
+/// @throws base::ConfigError as ClosedFormLimits(), and for an object that falls while the robot
+/// stands still or drives at a 30th of what its controller allows.
+std::optional<LimitsReport> FindLimits(const LimitsRequest& request,
+                                       const imagination::ImaginationSetup& setup,
+                                       const base::Crew& crew);
+
+/// For people: the closed forms beside what the base's controller allows.
+std::string ClosedFormText(const std::vector<MotionBounds>& bounds);
+/// For people: a table, and what it rests on.
+std::string LimitsText(const LimitsReport& report);
+/// To be pasted: the parameters of move_base's DWAPlannerROS, or for a car-like base
+/// TebLocalPlannerROS, which plans with a turning radius; all motions together.
+std::string LimitsYaml(const LimitsReport& report);
+nlohmann::ordered_json ToJson(const LimitsReport& report);
+
+}  // namespace hires::evaluation

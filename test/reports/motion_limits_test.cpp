@@ -1,0 +1,207 @@
+#include "reports/limits/motion_limits.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "hires/base/error.h"
+#include "hires/physics/closed_forms.h"
+
+namespace hires::evaluation::motion_limits_test {
+namespace {
+
+using testing::AllOf;
+using testing::HasSubstr;
+
+constexpr double kScaleStep = 0.03;  // a limit lies so far below what nothing bears
+constexpr double kModel = 0.002;     // by so much the model's numbers are rounded
+const physics::UprightCylinder kMill{0.037, 0.274, 0.140};  // peppermill1
+
+imagination::ImaginationSetup SetupWith(
+    const std::function<void(robot::BaseControllerParams*)>& change = nullptr,
+    const std::string& uncertainty = "none") {
+  const std::string folder = std::string(HIRES_SOURCE_DIR) + "/config/";
+  imagination::SetupConfig config = imagination::ReadSetupConfig(folder + "scene.yaml");
+  config.uncertainty = uncertainty.empty() ? config.uncertainty : uncertainty;
+  imagination::ImaginationSetup setup = imagination::LoadImaginationSetup(config);
+  if (change) {
+    simulation::Scene scene = *setup.scene;
+    change(&scene.robot.profile.base_controller);
+    setup.scene = simulation::MakeScene(scene.world, scene.robot, scene.memory);
+  }
+  return setup;
+}
+
+/// Follows exactly, so that closed forms speak of it; at its time-out it stops within a step.
+void MakeIdeal(robot::BaseControllerParams* controller) {
+  controller->loop_frequency = controller->command_lag = controller->sway_compliance = 0.0;
+  controller->stops_at_timeout = true;
+}
+
+LimitsRequest Mill(double max_fall) {
+  LimitsRequest request;
+  request.object = "peppermill1";
+  request.max_fall = max_fall;
+  return request;
+}
+
+TEST(MotionLimitsTest, SoManyTruthsWithoutAFallTellEnough) {
+  EXPECT_EQ(NumTruths(0.01), 299);
+  EXPECT_EQ(NumTruths(0.05), 59);
+  EXPECT_EQ(NumTruths(0.5), 5);
+  for (const double share : {0.001, 0.0137, 0.2}) {
+    const int n = NumTruths(share);
+    EXPECT_LE(std::pow(1.0 - share, n), 0.05);
+    EXPECT_GT(std::pow(1.0 - share, n - 1), 0.05);
+  }
+}
+
+TEST(MotionLimitsTest, TheSpeedOfALockedWheelIsTheClosedForms) {
+  const auto report = FindLimits(Mill(0.5), SetupWith(MakeIdeal), {});
+  ASSERT_TRUE(report);
+  const double speed = physics::SuddenStopTopplingSpeed(kMill, 9.81);
+  EXPECT_NEAR(report->Of("speed").closed_form, speed, kModel * speed);
+  EXPECT_NEAR(report->Of("speed").value, speed, 2.0 * kScaleStep * speed);
+  // On the spot, too: the tray stops as suddenly, some way off the centre.
+  const double reach = SetupWith().scene->X_BO.translation.head<2>().norm();
+  EXPECT_NEAR(report->Of("turning").closed_form, speed / reach, kModel * speed / reach);
+  EXPECT_NEAR(report->Of("turning").value, speed / reach, 2.0 * kScaleStep * speed / reach);
+  const double tips = physics::TippingAcceleration(kMill, 9.81);
+  EXPECT_NEAR(report->Of("deceleration").closed_form, tips, kModel * tips);
+  const std::vector<MotionBounds> bounds = ClosedFormLimits("peppermill1", SetupWith(MakeIdeal));
+  ASSERT_EQ(bounds.size(), 4u);
+  for (const MotionBounds& motion : bounds) {
+    EXPECT_EQ(motion.closed_form, report->Of(motion.motion).closed_form) << motion.motion;
+  }
+}
+
+TEST(MotionLimitsTest, AControllersOwnStopOverturnsFromWhereThePulseIsLongEnough) {
+  constexpr double kBraking = 4.0;  // [m/s^2]
+  const auto setup = SetupWith([](robot::BaseControllerParams* controller) {
+    MakeIdeal(controller);
+    controller->stops_at_timeout = false;
+    controller->limits.max_linear_acceleration = kBraking;
+  });
+  const auto report = FindLimits(Mill(0.5), setup, {});
+  ASSERT_TRUE(report);
+  // Each axis has a ramp of its own: a slanting stop is sqrt(2) times as hard.
+  const double hardest = std::sqrt(2.0) * kBraking;
+  const double speed = hardest * physics::OverturningPulseDuration(kMill, hardest, 9.81);
+  ASSERT_LT(speed, report->Of("speed").robots_own);
+  EXPECT_NEAR(report->Of("speed").value, speed, 2.0 * kScaleStep * speed);
+}
+
+TEST(MotionLimitsTest, WhoAllowsMoreFallsMayGoFurther) {
+  const auto setup = SetupWith(nullptr, "");
+  const auto strict = FindLimits(Mill(0.1), setup, {2, {}, {}});
+  const auto lax = FindLimits(Mill(0.4), setup, {2, {}, {}});
+  ASSERT_TRUE(strict && lax);
+  EXPECT_LE(strict->Of("speed").value, lax->Of("speed").value);
+  EXPECT_LT(lax->Of("speed").value, lax->Of("speed").robots_own);
+  EXPECT_EQ(strict->num_truths, 29);
+}
+
+TEST(MotionLimitsTest, NewTruthsFallMoreOftenAboveALimit) {
+  LimitsRequest request = Mill(0.4);
+  request.check_truths = 40;
+  const auto report = FindLimits(request, SetupWith(nullptr, ""), {2, {}, {}});
+  ASSERT_TRUE(report);
+  const LimitCheck& speed = *report->Of("speed").check;
+  EXPECT_LE(speed.falls_at, 16);
+  ASSERT_TRUE(speed.falls_above);
+  EXPECT_GT(*speed.falls_above, speed.falls_at);
+  EXPECT_THAT(LimitsText(*report), HasSubstr("of 40 new"));
+}
+
+TEST(MotionLimitsTest, AnyNumberOfThreadsFindsTheSame) {
+  const auto setup = SetupWith(nullptr, "");
+  const auto one = FindLimits(Mill(0.3), setup, {1, {}, {}});
+  const auto three = FindLimits(Mill(0.3), setup, {3, {}, {}});
+  ASSERT_TRUE(one && three);
+  EXPECT_EQ(ToJson(*one).dump(), ToJson(*three).dump());
+}
+
+TEST(MotionLimitsTest, WhatIsPastedIsNoMoreThanWhatHoldsTogether) {
+  const auto report = FindLimits(Mill(0.4), SetupWith(nullptr, ""), {2, {}, {}});
+  ASSERT_TRUE(report);
+  const std::string yaml = LimitsYaml(*report);
+  base::ParamReader pasted = base::ParamReader::FromString(yaml, "pasted").Sub("DWAPlannerROS");
+  const double share = report->Of("together").value;
+  const auto number = [&](const std::string& key) { return pasted.Get(key, base::Positive()); };
+  EXPECT_LE(number("max_vel_x"), share * report->Of("speed").value);
+  EXPECT_GT(number("max_vel_x"), share * report->Of("speed").value - 0.0011);
+  EXPECT_LE(number("acc_lim_x") * std::sqrt(2.0), share * report->Of("deceleration").value);
+  EXPECT_LE(number("max_vel_theta"), share * report->Of("turning").value);
+  EXPECT_EQ(number("max_vel_y"), number("max_vel_x"));
+  const auto wheels =
+      SetupWith([](auto* controller) { controller->drive = robot::Drive::kDifferential; });
+  const auto two_wheels = FindLimits(Mill(0.5), wheels, {});
+  ASSERT_TRUE(two_wheels);
+  EXPECT_THAT(LimitsYaml(*two_wheels),
+              AllOf(HasSubstr("max_vel_y: 0\n"), HasSubstr("min_vel_y: 0\n")));
+}
+
+TEST(MotionLimitsTest, TurningDoesNotPushWhatStandsOverTheBasesCentre) {
+  imagination::ImaginationSetup setup = SetupWith(MakeIdeal);
+  simulation::Scene scene = *setup.scene;
+  scene.X_BO.translation.head<2>().setZero();
+  setup.scene = std::make_shared<const simulation::Scene>(scene);
+  EXPECT_NE(ClosedFormLimits("peppermill1", setup)[3].stated.find("turning does not push it"),
+            std::string::npos);
+}
+
+TEST(MotionLimitsTest, ACarTurnsRoundItsSmallestCircle) {
+  constexpr double kRadius = 0.5;
+  const auto setup = SetupWith([](robot::BaseControllerParams* controller) {
+    MakeIdeal(controller);
+    controller->drive = robot::Drive::kCarLike;
+    controller->min_turning_radius = kRadius;
+    controller->limits.max_linear_velocity = 3.0;
+    controller->limits.max_angular_velocity = 7.0;
+  });
+  const auto report = FindLimits(Mill(0.5), setup, {});
+  ASSERT_TRUE(report);
+  const auto& p_BO = setup.scene->X_BO.translation;
+  const double arm = std::hypot(p_BO.x(), kRadius + std::abs(p_BO.y()));
+  const double turning = physics::SuddenStopTopplingSpeed(kMill, 9.81) / arm;
+  EXPECT_EQ(report->Of("turning").robots_own, 3.0 / kRadius);
+  EXPECT_NEAR(report->Of("turning").closed_form, turning, kModel * turning);
+  EXPECT_NEAR(report->Of("turning").value, turning, 2.0 * kScaleStep * turning);
+  EXPECT_THAT(LimitsYaml(*report),
+              AllOf(HasSubstr("TebLocalPlannerROS:"), HasSubstr("max_vel_y: 0\n"),
+                    HasSubstr("min_turning_radius: 0.5\n")));
+  EXPECT_EQ(report->num_directions, 1);
+}
+
+TEST(MotionLimitsTest, EndsWhenItIsCancelled) {
+  EXPECT_FALSE(FindLimits(Mill(0.3), SetupWith(nullptr, ""), {2, [] { return true; }, {}}));
+}
+
+TEST(MotionLimitsTest, SaysWhatCannotBeCarried) {
+  const auto error_of = [](const std::string& object, const imagination::ImaginationSetup& setup) {
+    LimitsRequest request = Mill(0.5);
+    request.object = object;
+    try {
+      FindLimits(request, setup, {});
+    } catch (const base::ConfigError& error) {
+      return std::string(error.what());
+    }
+    return std::string("no error");
+  };
+  EXPECT_THAT(error_of("pepermill1", SetupWith()), HasSubstr("peppermill1"));
+  const auto idle = SetupWith([](robot::BaseControllerParams* controller) {
+    controller->limits.max_linear_acceleration = 0.0;
+  });
+  EXPECT_THAT(error_of("peppermill1", idle), HasSubstr("max_linear_acceleration is 0"));
+  const auto hasty = SetupWith([](robot::BaseControllerParams* controller) {
+    MakeIdeal(controller);
+    controller->limits.max_linear_velocity = 12.0;
+  });
+  EXPECT_THAT(error_of("peppermill1", hasty),
+              AllOf(HasSubstr("peppermill1"), HasSubstr("speed"), HasSubstr("--max-fall")));
+}
+
+}  // namespace
+}  // namespace hires::evaluation::motion_limits_test
