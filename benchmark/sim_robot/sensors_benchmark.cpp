@@ -4,7 +4,7 @@
 
 /// What the sensors of the simulated robot cost that other programs look through, in the
 /// restaurant.
-namespace hires::evaluation {
+namespace hires::sim_robot {
 namespace {
 
 const imagination::ImaginationSetup& Restaurant() {
@@ -60,4 +60,4 @@ void BM_TrayScan(benchmark::State& state) {
 BENCHMARK(BM_TrayScan)->Unit(benchmark::kMicrosecond);
 
 }  // namespace
-}  // namespace hires::evaluation
+}  // namespace hires::sim_robot

@@ -3,7 +3,7 @@
 #include "cli/package_folder.h"
 
 int main(int argc, char** argv) {
-  hires::cli::LabBackends backends;
+  hires::lab::LabBackends backends;
   backends.package_folder = hires::cli::LocalPackageFolder(HIRES_SOURCE_DIR);
-  return hires::cli::RunLabCommandLine({argv, argv + argc}, backends);
+  return hires::lab::RunLabCommandLine({argv, argv + argc}, backends);
 }

@@ -11,14 +11,14 @@
 int main(int argc, char** argv) {
   std::vector<std::string> arguments;  // roslaunch adds names and remappings that are not ours
   ros::removeROSArgs(argc, argv, arguments);
-  hires::cli::LabBackends backends;
+  hires::lab::LabBackends backends;
   backends.package_folder = ros::package::getPath("hires");
-  backends.play_hypothesis = hires::cli::PlayHypothesisRun;
+  backends.play_hypothesis = hires::lab::PlayHypothesisRun;
   backends.hypothesis_run = [&](const std::vector<std::string>& words) {
     return hires_ros::RunHypothesisProcess(words, backends.package_folder);
   };
   backends.scenario_run = [&](const std::vector<std::string>& words) {
     return hires_ros::RunScenarioProcess(words, backends.package_folder);
   };
-  return hires::cli::RunLabCommandLine(arguments, backends);
+  return hires::lab::RunLabCommandLine(arguments, backends);
 }

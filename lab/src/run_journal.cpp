@@ -14,7 +14,7 @@
 #include "hires/base/log.h"
 #include "hires/base/text.h"
 
-namespace hires::evaluation {
+namespace hires::lab {
 namespace {
 
 using nlohmann::ordered_json;
@@ -134,4 +134,4 @@ void RunJournal::AppendText(const std::string& line) {
   if (fsync(fd_) != 0 && errno != EINVAL) FailWith(path_, "the journal cannot be written");
 }
 
-}  // namespace hires::evaluation
+}  // namespace hires::lab

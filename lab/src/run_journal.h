@@ -4,7 +4,7 @@
 #include <nlohmann/json_fwd.hpp>
 #include <string>
 
-namespace hires::evaluation {
+namespace hires::lab {
 
 /// Finished runs in a file of JSON lines, so that hours of work outlive whatever ends the program.
 /// The first line says what the runs have in common. A last line that was cut off is dropped.
@@ -35,4 +35,4 @@ class RunJournal {
   int fd_{-1};
 };
 
-}  // namespace hires::evaluation
+}  // namespace hires::lab

@@ -4,7 +4,7 @@
 
 #include "hires/base/rng.h"
 
-namespace hires::evaluation {
+namespace hires::lab {
 
 /// The seed of a stream as one that can be written down everywhere: ROS parameters have 32 bits and
 /// a sign.
@@ -13,4 +13,4 @@ inline std::uint64_t SeedOf(const base::Rng& rng) {
   return rng.seed() & kLargestSeed;
 }
 
-}  // namespace hires::evaluation
+}  // namespace hires::lab

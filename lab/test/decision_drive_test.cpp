@@ -8,12 +8,9 @@
 
 #include "lab/src/decision/decision_play.h"
 
-namespace hires::cli::decision_drive_test {
+namespace hires::lab::decision_drive_test {
 namespace {
 
-using evaluation::DecisionRecord;
-using evaluation::DecisionTask;
-using evaluation::TruthPlay;
 
 const loop::LoopSetup& TheSetup() {
   static const loop::LoopSetup setup(HIRES_SOURCE_DIR "/config/loop.yaml");
@@ -44,25 +41,25 @@ imagination::ImaginationSetup WorldWith(const Certain& certain) {
 /// truth tell who was right.
 DecisionRecord Decide(const DecisionTask& task, const Certain& certain) {
   const imagination::ImaginationSetup world = WorldWith(certain);
-  evaluation::Truth truth = TheSetup().ReadTruth("same");
+  sim_robot::Truth truth = TheSetup().ReadTruth("same");
   truth.changes = certain;
-  evaluation::DecisionParts parts{world, TheSetup().imagination().scheduler};
+  DecisionParts parts{world, TheSetup().imagination().scheduler};
   parts.scheduler.rollouts = 16;
   parts.oracle_plays = 3;
   parts.play = [&](const DecisionTask& drive, const std::string& set, std::uint64_t seed) {
     return PlayDrive(TheSetup(), truth, drive, set, seed);
   };
   DecisionRecord record;
-  record.imagined = *evaluation::Imagine(task, parts);
-  for (const std::string& set : evaluation::DecisionAlternatives()) {
-    record.oracle[set] = *evaluation::PlayForOracle(task, set, parts);
+  record.imagined = *Imagine(task, parts);
+  for (const std::string& set : DecisionAlternatives()) {
+    record.oracle[set] = *PlayForOracle(task, set, parts);
   }
   return record;
 }
 
 /// What imagination recommends; nothing where it is not sure.
 std::string Recommended(const DecisionRecord& record) {
-  const auto& advice = record.imagined.decided.at(evaluation::kImaginationArm).advice.front();
+  const auto& advice = record.imagined.decided.at(kImaginationArm).advice.front();
   return advice.outcome == imagination::ImaginationOutcome::kRanked ? advice.first : "";
 }
 
@@ -73,9 +70,9 @@ int NumFallen(const std::vector<TruthPlay>& plays) {
 
 double MeanCost(const DecisionTask& task, const std::vector<TruthPlay>& plays) {
   const auto prices =
-      evaluation::PricesOf(task, TheSetup().imagination().scheduler.criteria.prices, 1.0);
+      PricesOf(task, TheSetup().imagination().scheduler.criteria.prices, 1.0);
   double sum = 0.0;
-  for (const TruthPlay& play : plays) sum += evaluation::CostOf(play, prices);
+  for (const TruthPlay& play : plays) sum += CostOf(play, prices);
   return sum / static_cast<double>(plays.size());
 }
 
@@ -100,4 +97,4 @@ TEST(DecisionDriveTest, FastWinsWithALoadThatCannotFall) {
 }
 
 }  // namespace
-}  // namespace hires::cli::decision_drive_test
+}  // namespace hires::lab::decision_drive_test

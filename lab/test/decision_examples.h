@@ -5,7 +5,7 @@
 #include "lab/src/decision/decision.h"
 #include "lab/src/decision/decision_report.h"
 
-namespace hires::evaluation {
+namespace hires::lab {
 
 /// Fast takes 10 s, slow 20 s; the load falls or not. The oracle saw each four times: fast fell in
 /// one of them, slow never.
@@ -46,4 +46,4 @@ inline imagination::Prices SimplePrices() {
   return prices;
 }
 
-}  // namespace hires::evaluation
+}  // namespace hires::lab

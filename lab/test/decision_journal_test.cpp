@@ -13,7 +13,7 @@
 #include "hires/imagination/client_config.h"
 #include "support/temporary_folder.h"
 
-namespace hires::evaluation::decision_journal_test {
+namespace hires::lab::decision_journal_test {
 namespace {
 
 using nlohmann::ordered_json;
@@ -183,4 +183,4 @@ TEST_F(DecisionJournalTest, TheHashOfARequestIsOfAllThatImaginationIsHanded) {
 }
 
 }  // namespace
-}  // namespace hires::evaluation::decision_journal_test
+}  // namespace hires::lab::decision_journal_test

@@ -6,7 +6,7 @@
 
 #include "lab/test/decision_examples.h"
 
-namespace hires::evaluation::decision_report_test {
+namespace hires::lab::decision_report_test {
 namespace {
 
 using testing::HasSubstr;
@@ -149,4 +149,4 @@ TEST(CalibrateTest, CountsStepsDurationsAndActions) {
 }
 
 }  // namespace
-}  // namespace hires::evaluation::decision_report_test
+}  // namespace hires::lab::decision_report_test

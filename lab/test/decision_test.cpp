@@ -9,7 +9,7 @@
 #include "lab/test/decision_examples.h"
 #include "hires/world/fall_code.h"
 
-namespace hires::evaluation::decision_test {
+namespace hires::lab::decision_test {
 namespace {
 
 using base::FailureCode;
@@ -147,4 +147,4 @@ TEST(DecisionChoiceTest, WhatLeadsIsTakenUnlessAllFail) {
 }
 
 }  // namespace
-}  // namespace hires::evaluation::decision_test
+}  // namespace hires::lab::decision_test

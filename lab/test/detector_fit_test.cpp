@@ -12,7 +12,7 @@
 #include "hires/base/text.h"
 #include "hires/robot/load_robot.h"
 
-namespace hires::evaluation::detector_fit_test {
+namespace hires::lab::detector_fit_test {
 namespace {
 
 using perception::DetectorErrors;
@@ -221,4 +221,4 @@ TEST(DetectorFitTest, ItIsCancelled) {
 }
 
 }  // namespace
-}  // namespace hires::evaluation::detector_fit_test
+}  // namespace hires::lab::detector_fit_test

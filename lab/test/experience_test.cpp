@@ -13,7 +13,7 @@
 #include "support/messages.h"
 #include "support/temporary_folder.h"
 
-namespace hires::evaluation::experience_test {
+namespace hires::lab::experience_test {
 namespace {
 
 using geometry::Pose2;
@@ -31,14 +31,14 @@ Pose3 Leaning(const Pose2& X_MB, double tilt) {
   return X_MO;
 }
 
-ToppleSample SampleAt(double time, const Pose2& X_MB, double tilt = 0.0) {
+reports::ToppleSample SampleAt(double time, const Pose2& X_MB, double tilt = 0.0) {
   const Pose3 X_MO = Leaning(X_MB, tilt);
   return {time, X_MB, X_MO, geometry::Lift(X_MB).Inverse() * X_MO};
 }
 
 TEST(ToppleMonitorTest, ConstantJerkIsFoundToTheDigit) {
   // x = t^3 / 6: v = t^2 / 2, a = t, j = 1; likewise the yaw.
-  ToppleMonitor monitor({});
+  reports::ToppleMonitor monitor({});
   for (int i = 0; i < 40; ++i) {
     const double t = 1.0 + 0.05 * i, s = t * t * t / 6.0;
     const auto part = monitor.Add(SampleAt(t, {s, 0.0, s}));
@@ -57,7 +57,7 @@ TEST(ToppleMonitorTest, ConstantJerkIsFoundToTheDigit) {
 }
 
 TEST(ToppleMonitorTest, AnEpisodeEndsWithEachFall) {
-  ToppleMonitor monitor({});
+  reports::ToppleMonitor monitor({});
   std::vector<std::uint32_t> episodes;
   std::vector<ToppleState> states;
   const std::vector<double> tilts{0.0, 0.0, 0.0, 0.0, 0.02, 0.6, 1.5,
@@ -75,7 +75,7 @@ TEST(ToppleMonitorTest, AnEpisodeEndsWithEachFall) {
 }
 
 TEST(ToppleMonitorTest, NothingIsDifferencedAcrossTwoLegs) {
-  ToppleMonitor monitor({});
+  reports::ToppleMonitor monitor({});
   for (int i = 0; i < 4; ++i) monitor.Add(SampleAt(0.05 * i, {}));
   monitor.Begin();
   for (int i = 4; i < 8; ++i) {
@@ -152,7 +152,7 @@ TEST(SeparationTest, NormalDistributionsHaveTheAreaOfTheBinormalModel) {
       run.negative.push_back(rng.Normal(0.0, 1.0));
     }
   }
-  const Interval area = AreaInterval({runs}, base::Rng(4));
+  const reports::Interval area = AreaInterval({runs}, base::Rng(4));
   EXPECT_NEAR(area.estimate, 0.7602, 0.01);
   EXPECT_LT(area.lower, area.estimate);
   EXPECT_GT(area.upper, area.estimate);
@@ -178,7 +178,7 @@ TEST(SeparationTest, WhatKnowsTheStratumAloneTellsNothingWithin) {
     }
   }
   EXPECT_GT(AreaInterval({all}, base::Rng(4)).lower, 0.6);
-  const Interval within = AreaIntervalWithin(strata, base::Rng(4));
+  const reports::Interval within = AreaIntervalWithin(strata, base::Rng(4));
   EXPECT_NEAR(within.estimate, 0.5, 0.03);
   EXPECT_LT(within.lower, 0.5);
   EXPECT_GT(within.upper, 0.5);
@@ -199,9 +199,9 @@ TEST(SeparationTest, ResamplingKeepsHowManyRunsOfEachKindThereAre) {
     runs.push_back(slow);
     kinds.push_back("slow");
   }
-  const Interval mixed = AreaInterval({runs}, base::Rng(4));
+  const reports::Interval mixed = AreaInterval({runs}, base::Rng(4));
   EXPECT_GT(mixed.upper - mixed.lower, 0.02);
-  const Interval area = AreaInterval(StrataOf(runs, kinds), base::Rng(4));
+  const reports::Interval area = AreaInterval(StrataOf(runs, kinds), base::Rng(4));
   EXPECT_DOUBLE_EQ(area.estimate, mixed.estimate);
   EXPECT_DOUBLE_EQ(area.lower, area.estimate);
   EXPECT_DOUBLE_EQ(area.upper, area.estimate);
@@ -333,4 +333,4 @@ TEST_F(ExperienceReportTest, TooLittleIsSaid) {
 }
 
 }  // namespace
-}  // namespace hires::evaluation::experience_test
+}  // namespace hires::lab::experience_test

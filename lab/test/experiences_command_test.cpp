@@ -8,7 +8,7 @@
 #include "hires/knowledge/experience.h"
 #include "support/temporary_folder.h"
 
-namespace hires::cli::experiences_command_test {
+namespace hires::lab::experiences_command_test {
 namespace {
 
 using hires::test_support::Ended;
@@ -41,7 +41,7 @@ class ExperiencesCommandTest : public ::testing::Test {
   /// What an export that is refused says.
   std::string RefusalOf(const std::vector<std::string>& selection) const {
     const Ended ended = Export(selection);
-    EXPECT_EQ(ended.code, kExitBadInput);
+    EXPECT_EQ(ended.code, cli::kExitBadInput);
     EXPECT_EQ(ended.out, "");
     EXPECT_EQ(base::ReadTextFile(csv_), "before\n") << "the file stays";
     EXPECT_FALSE(std::filesystem::exists(csv_ + ".unfinished"));
@@ -99,7 +99,7 @@ TEST_F(ExperiencesCommandTest, TheStoreIsNotWrittenOver) {
         {"stats", store_, "--json", same},
         {"analyse", store_, "--json", store_}}) {
     const Ended ended = RunHires({"experiences"}, words);
-    EXPECT_EQ(ended.code, kExitBadInput);
+    EXPECT_EQ(ended.code, cli::kExitBadInput);
     EXPECT_THAT(ended.err, HasSubstr("would write over the store; name another file"));
     EXPECT_EQ(base::ReadTextFile(store_), before);
   }
@@ -115,10 +115,10 @@ TEST_F(ExperiencesCommandTest, NumbersThatAreNoneAreRefused) {
 TEST_F(ExperiencesCommandTest, ASeedIsAWholeNumber) {
   for (const char* seed : {"-3", "2.5", "many"}) {
     const Ended ended = RunHires({"experiences", "analyse", store_, "--seed", seed});
-    EXPECT_EQ(ended.code, kExitBadInput);
+    EXPECT_EQ(ended.code, cli::kExitBadInput);
     EXPECT_THAT(ended.err, AllOf(HasSubstr("--seed"), HasSubstr("is no whole number")));
   }
 }
 
 }  // namespace
-}  // namespace hires::cli::experiences_command_test
+}  // namespace hires::lab::experiences_command_test

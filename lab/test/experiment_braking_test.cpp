@@ -11,7 +11,7 @@
 #include "lab/src/experiment/braking.h"
 #include "lab/src/experiment/experiment.h"
 
-namespace hires::evaluation::experiment_braking_test {
+namespace hires::lab::experiment_braking_test {
 namespace {
 
 using testing::AllOf;
@@ -199,4 +199,4 @@ TEST(BrakingReportTest, CountsFallsAndErrors) {
 }
 
 }  // namespace
-}  // namespace hires::evaluation::experiment_braking_test
+}  // namespace hires::lab::experiment_braking_test

@@ -15,7 +15,7 @@
 #include "hires/knowledge/experience.h"
 #include "support/temporary_folder.h"
 
-namespace hires::cli::experiment_command_test {
+namespace hires::lab::experiment_command_test {
 namespace {
 
 using hires::test_support::RunHires;
@@ -24,7 +24,7 @@ using knowledge::ExperienceStore;
 const std::string kRoot = HIRES_SOURCE_DIR;
 
 /// The exit code of `hires experiment` with a file that expects `expectation` of three legs.
-int ExitCode(const std::string& expectation, const std::vector<std::string>& more = {}) {
+int cli::ExitCode(const std::string& expectation, const std::vector<std::string>& more = {}) {
   std::string yaml = base::ReadTextFile(kRoot + "/lab/config/experiments/legs_world.yaml");
   yaml = yaml.substr(0, yaml.find("expect:")) + "expect: [" + expectation + "]\n";
   yaml.replace(yaml.find("../scene.yaml"), 13, kRoot + "/config/scene.yaml");
@@ -34,11 +34,11 @@ int ExitCode(const std::string& expectation, const std::vector<std::string>& mor
 }
 
 TEST(ExperimentCommandTest, ExitsByWhatTheFileExpects) {
-  EXPECT_EQ(ExitCode("{measure: reached, at_least: 1}"), 0);
-  EXPECT_EQ(ExitCode("{measure: reached, at_least: 2}"), 2);
-  EXPECT_EQ(ExitCode("{measure: raeched, at_least: 1}"), 1);
-  EXPECT_EQ(ExitCode("", {"--threads", "0"}), 1);
-  EXPECT_EQ(ExitCode("", {"--json", "/no/such/folder/x.json"}), 1);
+  EXPECT_EQ(cli::ExitCode("{measure: reached, at_least: 1}"), 0);
+  EXPECT_EQ(cli::ExitCode("{measure: reached, at_least: 2}"), 2);
+  EXPECT_EQ(cli::ExitCode("{measure: raeched, at_least: 1}"), 1);
+  EXPECT_EQ(cli::ExitCode("", {"--threads", "0"}), 1);
+  EXPECT_EQ(cli::ExitCode("", {"--json", "/no/such/folder/x.json"}), 1);
 }
 
 TEST(ExperimentCommandTest, SeedsOfAllVerbsAreWholeNumbers) {
@@ -75,7 +75,7 @@ TEST(ExperimentCommandTest, ASingleTableDecidesNoGoalAndThatIsSaid) {
 
 TEST(ExperimentCommandTest, WritesCsvAndJson) {
   const std::string csv = testing::TempDir() + "legs.csv", json = testing::TempDir() + "legs.json";
-  EXPECT_EQ(ExitCode("", {"--csv", csv, "--json", json, "--seed", "5"}), 0);
+  EXPECT_EQ(cli::ExitCode("", {"--csv", csv, "--json", json, "--seed", "5"}), 0);
   EXPECT_THAT(base::ReadTextFile(csv), testing::StartsWith("chain,leg,from,to,start_x"));
   const auto report = nlohmann::json::parse(base::ReadTextFile(json));
   EXPECT_EQ(report["seed"], 5);
@@ -87,11 +87,11 @@ TEST(ExperimentCommandTest, WritesCsvAndJson) {
 
 TEST(ExperimentCommandTest, WritesWhatIsExpectedForBuildServers) {
   const std::string path = testing::TempDir() + "legs.xml";
-  EXPECT_EQ(ExitCode("{measure: reached, at_least: 2}", {"--junit", path}), 2);
+  EXPECT_EQ(cli::ExitCode("{measure: reached, at_least: 2}", {"--junit", path}), 2);
   EXPECT_THAT(base::ReadTextFile(path),
               testing::AllOf(testing::HasSubstr("<testsuite name=\"exit_code\" tests=\"1\""),
                              testing::HasSubstr("found 1\"")));
-  EXPECT_EQ(ExitCode("", {"--junit", "/no/such/folder/x.xml"}), 1);
+  EXPECT_EQ(cli::ExitCode("", {"--junit", "/no/such/folder/x.xml"}), 1);
 }
 
 /// A loop of some drives, and experiences of a play before it.
@@ -126,7 +126,7 @@ class ExperiencesOfALoopTest : public ::testing::Test {
 
 TEST_F(ExperiencesOfALoopTest, ReplaceTheFileWhenAllIsPlayed) {
   const auto ended = RunHires(words_);
-  EXPECT_EQ(ended.code, kExitRecommended) << ended.err;
+  EXPECT_EQ(ended.code, cli::kExitRecommended) << ended.err;
   EXPECT_THAT(Runs(), testing::ElementsAre("fast/0", "fast/1", "slow/0", "slow/1"));
   EXPECT_FALSE(std::filesystem::exists(store_ + ".unfinished"));
 }
@@ -139,7 +139,7 @@ TEST_F(ExperiencesOfALoopTest, LeaveTheFileWhenThePlayIsInterrupted) {
   app.parse(last_first);
   const auto ended =
       hires::test_support::Capture([&] { return RunExperimentVerb(options, [] { return true; }); });
-  EXPECT_EQ(ended.code, kExitCancelled) << ended.err;
+  EXPECT_EQ(ended.code, cli::kExitCancelled) << ended.err;
   EXPECT_THAT(Runs(), testing::ElementsAre("old"));
   EXPECT_FALSE(std::filesystem::exists(store_ + ".unfinished"));
 }
@@ -160,4 +160,4 @@ TEST(ExperimentCommandTest, AFileOfThePackageIsFoundByItsName) {
 }
 
 }  // namespace
-}  // namespace hires::cli::experiment_command_test
+}  // namespace hires::lab::experiment_command_test

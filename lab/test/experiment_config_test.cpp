@@ -12,7 +12,7 @@
 #include "hires/world/world.h"
 #include "support/temporary_folder.h"
 
-namespace hires::evaluation::experiment_config_test {
+namespace hires::lab::experiment_config_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -246,4 +246,4 @@ TEST(ExperimentConfigTest, WhatBefallsARobotIsReadAndRefusedWithItsKey) {
 }
 
 }  // namespace
-}  // namespace hires::evaluation::experiment_config_test
+}  // namespace hires::lab::experiment_config_test

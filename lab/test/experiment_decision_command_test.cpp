@@ -7,7 +7,7 @@
 #include "cli/command_line.h"
 #include "support/temporary_folder.h"
 
-namespace hires::cli::experiment_decision_command_test {
+namespace hires::lab::experiment_decision_command_test {
 namespace {
 
 using hires::test_support::Ended;
@@ -27,7 +27,7 @@ class DecisionCommandTest : public ::testing::Test {
     const Ended ended =
         Decide({"--runs", runs, "--threads", threads, "--arms", "always_fast,always_slow",
                 "--resume", File(journal), "--json", File("report.json"), "--quiet"});
-    EXPECT_EQ(ended.code, kExitRecommended) << ended.err;
+    EXPECT_EQ(ended.code, cli::kExitRecommended) << ended.err;
     EXPECT_THAT(ended.out, HasSubstr("truth same"));
     return nlohmann::json::parse(base::ReadTextFile(File("report.json")));
   }
@@ -47,7 +47,7 @@ TEST_F(DecisionCommandTest, RefusesBadArgumentsBeforeAnythingIsPlayed) {
   const auto error = [&](std::vector<std::string> words) {
     words.insert(words.end(), {"--resume", File("j")});
     const Ended ended = Decide(words);
-    EXPECT_EQ(ended.code, kExitBadInput);
+    EXPECT_EQ(ended.code, cli::kExitBadInput);
     return ended.err;
   };
   EXPECT_THAT(error({"--arms", "imagination,always_slo"}), HasSubstr("did you mean 'always_slow'"));
@@ -60,9 +60,9 @@ TEST_F(DecisionCommandTest, AJournalOfAnotherSeriesIsRefused) {
   Constants("1", "1", "j");
   const Ended ended = Decide({"--runs", "1", "--seed", "2", "--arms", "always_fast,always_slow",
                               "--resume", File("j"), "--quiet"});
-  EXPECT_EQ(ended.code, kExitBadInput);
+  EXPECT_EQ(ended.code, cli::kExitBadInput);
   EXPECT_THAT(ended.err, HasSubstr("seed 1, now it is 2"));
 }
 
 }  // namespace
-}  // namespace hires::cli::experiment_decision_command_test
+}  // namespace hires::lab::experiment_decision_command_test

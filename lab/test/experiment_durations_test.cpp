@@ -7,7 +7,7 @@
 #include "lab/src/durations/duration_fit.h"
 #include "lab/src/experiment/kinds.h"
 
-namespace hires::evaluation::experiment_durations_test {
+namespace hires::lab::experiment_durations_test {
 namespace {
 
 using imagination::RolloutResult;
@@ -192,4 +192,4 @@ TEST(DurationsTest, NamesOfMeasuresDoNotDependOnWhatWasPlayed) {
 }
 
 }  // namespace
-}  // namespace hires::evaluation::experiment_durations_test
+}  // namespace hires::lab::experiment_durations_test

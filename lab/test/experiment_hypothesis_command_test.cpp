@@ -11,7 +11,7 @@
 #include "cli/command_line.h"
 #include "support/temporary_folder.h"
 
-namespace hires::cli::experiment_hypothesis_command_test {
+namespace hires::lab::experiment_hypothesis_command_test {
 namespace {
 
 using hires::test_support::Ended;
@@ -22,9 +22,9 @@ using ::testing::SizeIs;
 
 const std::string kRoot = HIRES_SOURCE_DIR;
 
-Ended RunWith(const std::vector<std::string>& words, const evaluation::PlayHypothesis& play = {},
+Ended RunWith(const std::vector<std::string>& words, const PlayHypothesis& play = {},
               const std::string& package_folder = kRoot) {
-  Backends backends;
+  cli::Backends backends;
   backends.package_folder = package_folder;
   backends.play_hypothesis = play;
   return RunHires({"experiment", "hypothesis"}, words, backends);
@@ -33,10 +33,10 @@ Ended RunWith(const std::vector<std::string>& words, const evaluation::PlayHypot
 /// Succeeds with imagination, and without in odd runs; remembers what it was asked.
 class FakePlayer {
  public:
-  std::optional<evaluation::HypothesisRun> operator()(const evaluation::HypothesisOrder& order) {
+  std::optional<HypothesisRun> operator()(const HypothesisOrder& order) {
     if (static_cast<int>(orders.size()) == stop_after) return std::nullopt;
     orders.push_back(order);
-    evaluation::HypothesisRun run =
+    HypothesisRun run =
         evaluation::RecordOf(0, false, order.imagines || order.run % 2 == 1);
     if (order.run == dies_in) {
       run = {};
@@ -45,13 +45,13 @@ class FakePlayer {
     }
     return run;
   }
-  evaluation::PlayHypothesis AsPlay() {
-    return [this](const evaluation::HypothesisOrder& order, const std::function<bool()>&) {
+  PlayHypothesis AsPlay() {
+    return [this](const HypothesisOrder& order, const std::function<bool()>&) {
       return (*this)(order);
     };
   }
 
-  std::vector<evaluation::HypothesisOrder> orders;
+  std::vector<HypothesisOrder> orders;
   int stop_after{-1};
   int dies_in{-1};
 };
@@ -75,7 +75,7 @@ class HypothesisCommandTest : public ::testing::Test {
 TEST_F(HypothesisCommandTest, PlaysEveryRunInBothArmsOnTheSameSeed) {
   FakePlayer player;
   const Ended ended = RunWith(Words({"--csv", File("runs.csv")}), player.AsPlay());
-  EXPECT_EQ(ended.code, kExitRecommended) << ended.err;
+  EXPECT_EQ(ended.code, cli::kExitRecommended) << ended.err;
   ASSERT_THAT(player.orders, SizeIs(8));
   for (std::size_t i = 0; i < 8; i += 2) {
     EXPECT_EQ(player.orders[i].seed, player.orders[i + 1].seed);
@@ -95,15 +95,15 @@ TEST_F(HypothesisCommandTest, WhatWasPlayedBeforeAnInterruptionIsNotPlayedAgain)
   FakePlayer first, second, whole;
   first.stop_after = 3;
   const Ended stopped = RunWith(Words(), first.AsPlay());
-  EXPECT_EQ(stopped.code, kExitCancelled);
+  EXPECT_EQ(stopped.code, cli::kExitCancelled);
   EXPECT_THAT(stopped.err, HasSubstr("3 of 8 runs are kept"));
-  EXPECT_EQ(RunWith(Words(), second.AsPlay()).code, kExitRecommended);
+  EXPECT_EQ(RunWith(Words(), second.AsPlay()).code, cli::kExitRecommended);
   ASSERT_THAT(second.orders, SizeIs(5));
   EXPECT_EQ(second.orders[0].run, 2);
   EXPECT_FALSE(second.orders[0].imagines);
   auto resumed = Report();
   std::filesystem::remove(File("j"));
-  EXPECT_EQ(RunWith(Words(), whole.AsPlay()).code, kExitRecommended);
+  EXPECT_EQ(RunWith(Words(), whole.AsPlay()).code, cli::kExitRecommended);
   auto at_once = Report();
   for (auto* report : {&resumed, &at_once}) {
     for (auto& run : (*report)["list"]) run.erase("wall_seconds");
@@ -114,7 +114,7 @@ TEST_F(HypothesisCommandTest, WhatWasPlayedBeforeAnInterruptionIsNotPlayedAgain)
 TEST_F(HypothesisCommandTest, ARunWhoseSystemDiesCountsAsFailed) {
   FakePlayer player;
   player.dies_in = 1;
-  EXPECT_EQ(RunWith(Words(), player.AsPlay()).code, kExitRecommended);
+  EXPECT_EQ(RunWith(Words(), player.AsPlay()).code, cli::kExitRecommended);
   EXPECT_EQ(Report()["with_imagination"]["successes"], 3);
   EXPECT_EQ(Report()["with_imagination"]["complete"], 3);
   EXPECT_EQ(Report()["list"][0]["outcome"], "system_died");
@@ -125,7 +125,7 @@ TEST_F(HypothesisCommandTest, RefusesBadArgumentsBeforeAnythingIsPlayed) {
   FakePlayer player;
   const auto error = [&](const std::vector<std::string>& words) {
     const Ended ended = RunWith(words, player.AsPlay());
-    EXPECT_EQ(ended.code, kExitBadInput);
+    EXPECT_EQ(ended.code, cli::kExitBadInput);
     return ended.err;
   };
   EXPECT_THAT(error({"--scenario", "tople"}), HasSubstr("did you mean 'topple'"));
@@ -161,7 +161,7 @@ TEST_F(HypothesisCommandTest, PlaysInThisProcessWithoutAnyNode) {
         RunWith({"--scenario", "topple", "--runs", "1", "--local", "--resume", File("j" + threads),
                  "--json", File("report.json"), "--threads", threads},
                 {}, package);
-    ASSERT_EQ(ended.code, kExitRecommended) << ended.err;
+    ASSERT_EQ(ended.code, cli::kExitRecommended) << ended.err;
     EXPECT_THAT(ended.out, HasSubstr("truth same, in virtual time"));
     auto runs = Report()["list"];
     ASSERT_THAT(runs, SizeIs(2));
@@ -177,9 +177,9 @@ TEST_F(HypothesisCommandTest, PlaysInThisProcessWithoutAnyNode) {
 
 TEST_F(HypothesisCommandTest, SaysThatABuildWithoutRosCannotPlayIt) {
   const Ended ended = RunWith(Words(), {});
-  EXPECT_EQ(ended.code, kExitBadInput);
+  EXPECT_EQ(ended.code, cli::kExitBadInput);
   EXPECT_THAT(ended.err, HasSubstr("build with ROS"));
 }
 
 }  // namespace
-}  // namespace hires::cli::experiment_hypothesis_command_test
+}  // namespace hires::lab::experiment_hypothesis_command_test

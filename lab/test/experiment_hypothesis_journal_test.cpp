@@ -8,7 +8,7 @@
 #include "lab/src/experiment/hypothesis_journal.h"
 #include "support/temporary_folder.h"
 
-namespace hires::evaluation::experiment_hypothesis_journal_test {
+namespace hires::lab::experiment_hypothesis_journal_test {
 namespace {
 
 using hires::test_support::TemporaryFolder;
@@ -106,4 +106,4 @@ TEST_F(HypothesisJournalTest, HasOneWriterAtATime) {
 }
 
 }  // namespace
-}  // namespace hires::evaluation::experiment_hypothesis_journal_test
+}  // namespace hires::lab::experiment_hypothesis_journal_test

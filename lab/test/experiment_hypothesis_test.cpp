@@ -10,7 +10,7 @@
 #include "hires/imagination/imagination_setup.h"
 #include "support/temporary_folder.h"
 
-namespace hires::evaluation::experiment_hypothesis_test {
+namespace hires::lab::experiment_hypothesis_test {
 namespace {
 
 using hires::test_support::TemporaryFolder;
@@ -165,7 +165,7 @@ TEST(HypothesisScenariosTest, NoScenarioBeginsWithSuccess) {
     const HypothesisGoal goal = ReadHypothesisGoal(kFile, scenario);
     simulation::RunTruth truth;
     for (const auto& object :
-         ReadScenario(kRoot + "/config/scenarios/" + scenario + ".yaml").objects) {
+         sim_robot::ReadScenario(kRoot + "/config/scenarios/" + scenario + ".yaml").objects) {
       simulation::ObjectFate& fate = truth.objects[base::ToLower(object.name)];
       fate.X_MO = object.X_MO;
       fate.stands = true;
@@ -191,8 +191,8 @@ TEST(HypothesisScenariosTest, TheCoffeesPlacesAreTheGuestsOwn) {
 }
 
 TEST(CountReportTest, CountsStepsAndAnswersInTime) {
-  AchieveReport report;
-  report.outcome = AchieveOutcome::kSucceeded;
+  loop::AchieveReport report;
+  report.outcome = loop::AchieveOutcome::kSucceeded;
   report.status.replans = 2;
   report.status.now = 60.0;
   report.status.steps.resize(3);
@@ -200,8 +200,8 @@ TEST(CountReportTest, CountsStepsAndAnswersInTime) {
   report.status.steps[0].finished = 30.0;
   report.status.steps[1].started = 30.0;
   report.status.steps[1].finished = 50.0;
-  ImaginedStep in_time;
-  in_time.outcome = ImaginedOutcome::kRanked;
+  loop::ImaginedStep in_time;
+  in_time.outcome = loop::ImaginedOutcome::kRanked;
   in_time.requested = 11.0;
   in_time.answered = 20.0;
   in_time.dispatch = 30.0;
@@ -209,7 +209,7 @@ TEST(CountReportTest, CountsStepsAndAnswersInTime) {
   in_time.recommended = 0;
   in_time.predictions.resize(1);
   in_time.predictions[0].action = {"move_base_param", {"area1", "slow"}};
-  ImaginedStep late = in_time, given_up = in_time, refused = in_time, asked_first = in_time;
+  loop::ImaginedStep late = in_time, given_up = in_time, refused = in_time, asked_first = in_time;
   late.step = 1;
   late.dispatch = 35.0;
   late.answered = 36.0;
@@ -219,12 +219,12 @@ TEST(CountReportTest, CountsStepsAndAnswersInTime) {
   refused.step = 3;
   refused.dispatch = 40.0;
   refused.predictions.clear();
-  refused.outcome = ImaginedOutcome::kInvalid;
+  refused.outcome = loop::ImaginedOutcome::kInvalid;
   asked_first.plan = -1;  // the same step, before a repair took it over
-  asked_first.outcome = ImaginedOutcome::kCancelled;
-  ImaginedStep thrown_away = in_time, asked_in_vain = in_time;
+  asked_first.outcome = loop::ImaginedOutcome::kCancelled;
+  loop::ImaginedStep thrown_away = in_time, asked_in_vain = in_time;
   thrown_away.dispatch = asked_in_vain.dispatch = 45.0;
-  asked_in_vain.outcome = ImaginedOutcome::kCancelled;
+  asked_in_vain.outcome = loop::ImaginedOutcome::kCancelled;
   report.status.imaginations = {asked_first, in_time,     late,         given_up,
                                 refused,     thrown_away, asked_in_vain};
   HypothesisRun run;
@@ -353,4 +353,4 @@ TEST(HypothesisReportTest, SaysTheSameToMachines) {
 }
 
 }  // namespace
-}  // namespace hires::evaluation::experiment_hypothesis_test
+}  // namespace hires::lab::experiment_hypothesis_test

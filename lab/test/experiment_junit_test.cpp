@@ -9,7 +9,7 @@
 
 #include "lab/src/experiment/report.h"
 
-namespace hires::evaluation::experiment_junit_test {
+namespace hires::lab::experiment_junit_test {
 namespace {
 
 using tinyxml2::XMLDocument;
@@ -136,4 +136,4 @@ TEST_F(JunitXmlTest, SaysFromWhatItCame) {
 }
 
 }  // namespace
-}  // namespace hires::evaluation::experiment_junit_test
+}  // namespace hires::lab::experiment_junit_test

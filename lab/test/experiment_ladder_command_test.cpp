@@ -4,7 +4,7 @@
 
 #include "cli/command_run.h"
 
-namespace hires::cli::experiment_ladder_command_test {
+namespace hires::lab::experiment_ladder_command_test {
 namespace {
 
 using hires::test_support::Ended;
@@ -23,7 +23,7 @@ TEST(ExperimentLadderCommandTest, RefusesBadOptionsBeforeItMeasures) {
   EXPECT_THAT(Ladder({"--threads", "0"}).err, HasSubstr("--threads"));
   EXPECT_THAT(Ladder({"--repeat", "3"}).err, HasSubstr("--repeats")) << "what comes near";
   const Ended no_folder = Ladder({"--json", "/no/such/folder/ladder.json"});
-  EXPECT_EQ(no_folder.code, kExitBadInput);
+  EXPECT_EQ(no_folder.code, cli::kExitBadInput);
   EXPECT_THAT(no_folder.err, HasSubstr("/no/such/folder"));
 }
 
@@ -32,9 +32,9 @@ TEST(ExperimentLadderCommandTest, StopsWhenCancelled) {
   options.quiet = true;
   const Ended ended = test_support::Capture(
       [&] { return RunLadderVerb(options, HIRES_SOURCE_DIR, [] { return true; }); });
-  EXPECT_EQ(ended.code, kExitCancelled);
+  EXPECT_EQ(ended.code, cli::kExitCancelled);
   EXPECT_EQ(ended.out, "");
 }
 
 }  // namespace
-}  // namespace hires::cli::experiment_ladder_command_test
+}  // namespace hires::lab::experiment_ladder_command_test

@@ -7,7 +7,7 @@
 #include "hires/base/error.h"
 #include "lab/src/experiment/report.h"
 
-namespace hires::evaluation::experiment_report_test {
+namespace hires::lab::experiment_report_test {
 namespace {
 
 using testing::HasSubstr;
@@ -127,4 +127,4 @@ TEST(ReportTest, JsonHasNullForWhatIsNoNumber) {
 }
 
 }  // namespace
-}  // namespace hires::evaluation::experiment_report_test
+}  // namespace hires::lab::experiment_report_test

@@ -13,7 +13,7 @@
 #include "hires/base/text.h"
 #include "hires/geometry/angles.h"
 
-namespace hires::evaluation::experiment_test {
+namespace hires::lab::experiment_test {
 namespace {
 
 using testing::HasSubstr;
@@ -267,4 +267,4 @@ TEST(ChainTest, OneTruthStaysTheSameForAllLegsAndDiffersBetweenChains) {
 }
 
 }  // namespace
-}  // namespace hires::evaluation::experiment_test
+}  // namespace hires::lab::experiment_test

@@ -6,7 +6,7 @@
 #include "lab/src/experiment/hypothesis.h"
 #include "lab/src/experiment/hypothesis_report.h"
 
-namespace hires::evaluation {
+namespace hires::lab {
 
 /// What `act` complains about.
 template <typename Act>
@@ -41,4 +41,4 @@ inline HypothesisSetting Setting(int runs) {
   return {"topple", runs, 1, 4.0, 2, "0123456789abcdef"};
 }
 
-}  // namespace hires::evaluation
+}  // namespace hires::lab

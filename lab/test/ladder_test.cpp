@@ -14,7 +14,7 @@
 #include "hires/geometry/angles.h"
 #include "support/messages.h"
 
-namespace hires::evaluation::ladder_test {
+namespace hires::lab::ladder_test {
 namespace {
 
 using namespace ladder;  // NOLINT: the folder's words
@@ -89,7 +89,7 @@ TEST(LadderMeasureTest, StopsWhenCancelled) {
 }
 
 TEST(LadderMeasureTest, RatiosHaveTheIntervalOfTheirLogarithms) {
-  const Interval ratio = RatioOf({1.0, 1.0, 1.0}, {1.0, 2.0, 4.0});
+  const reports::Interval ratio = RatioOf({1.0, 1.0, 1.0}, {1.0, 2.0, 4.0});
   constexpr double kT = 4.302652729911275;  // Student, 2 degrees of freedom, 97.5 %
   const double half = kT * std::log(2.0) / std::sqrt(3.0);
   EXPECT_NEAR(ratio.estimate, 2.0, 1e-12);
@@ -280,4 +280,4 @@ TEST(LadderTest, RefusesBadNumbers) {
 }
 
 }  // namespace
-}  // namespace hires::evaluation::ladder_test
+}  // namespace hires::lab::ladder_test

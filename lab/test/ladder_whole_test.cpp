@@ -4,7 +4,7 @@
 
 #include "lab/src/ladder/ladder.h"
 
-namespace hires::evaluation::ladder_whole_test {
+namespace hires::lab::ladder_whole_test {
 namespace {
 
 using testing::ElementsAre;
@@ -42,4 +42,4 @@ TEST(LadderWholeTest, WholeLadderHasItsFixedOrder) {
 }
 
 }  // namespace
-}  // namespace hires::evaluation::ladder_whole_test
+}  // namespace hires::lab::ladder_whole_test

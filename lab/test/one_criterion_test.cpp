@@ -14,7 +14,7 @@
 #include "hires/translation/classification.h"
 #include "support/scene_copy.h"
 
-namespace hires::evaluation::one_criterion_test {
+namespace hires::lab::one_criterion_test {
 namespace {
 
 using ::testing::AllOf;
@@ -200,4 +200,4 @@ TEST_F(OneCriterionTest, SymbolsSayWhatStandsByIt) {
 }
 
 }  // namespace
-}  // namespace hires::evaluation::one_criterion_test
+}  // namespace hires::lab::one_criterion_test

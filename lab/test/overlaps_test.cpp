@@ -2,7 +2,7 @@
 
 #include <gmock/gmock.h>
 
-namespace hires::evaluation::overlaps_test {
+namespace hires::lab::overlaps_test {
 namespace {
 
 using geometry::Collision;
@@ -61,4 +61,4 @@ TEST_F(NewOverlapsTest, TheRobotIsNamedWhetherItOrTheFurnitureWasMoved) {
 }
 
 }  // namespace
-}  // namespace hires::evaluation::overlaps_test
+}  // namespace hires::lab::overlaps_test

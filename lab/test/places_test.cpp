@@ -5,7 +5,7 @@
 
 #include <map>
 
-namespace hires::evaluation::places_test {
+namespace hires::lab::places_test {
 namespace {
 
 /// A moment at which the robot takes itself to be so far [m] from where it is.
@@ -47,4 +47,4 @@ TEST(LostTallyTest, TheTableTellsHowLongItTook) {
 }
 
 }  // namespace
-}  // namespace hires::evaluation::places_test
+}  // namespace hires::lab::places_test

@@ -12,7 +12,7 @@
 #include "support/messages.h"
 #include "support/temporary_folder.h"
 
-namespace hires::evaluation::pose_error_fit_test {
+namespace hires::lab::pose_error_fit_test {
 namespace {
 
 using geometry::Pose2;
@@ -138,4 +138,4 @@ TEST(PoseErrorExperimentTest, TheShippedFileIsOfTheShippedWorldAndFilters) {
 }
 
 }  // namespace
-}  // namespace hires::evaluation::pose_error_fit_test
+}  // namespace hires::lab::pose_error_fit_test

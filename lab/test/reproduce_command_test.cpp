@@ -11,10 +11,9 @@
 #include "support/messages.h"
 #include "support/temporary_folder.h"
 
-namespace hires::cli::reproduce_test {
+namespace hires::lab::reproduce_test {
 namespace {
 
-using evaluation::Play;
 using ::testing::AllOf;
 using ::testing::Contains;
 using ::testing::ElementsAre;
@@ -195,7 +194,7 @@ TEST_F(ReproduceTest, UndecidedChecksAreCountedApartFromUndecidedResults) {
       "plays: [{name: ratio, seconds: 1, inputs: [], command: \"list --json {answer}\"}]\nitems:\n"
       "  - {item: Table 1" +
           item + "  - {own: true, item: Table 2" + item);
-  const Play play = evaluation::ReadCatalogue(path).plays.front();
+  const Play play = ReadCatalogue(path).plays.front();
   PlayStore store({Path("results"), HIRES_SOURCE_DIR, "another build"});
   store.MakeRoom(play);
   base::ReplaceTextFile(store.AnswerOf(play), R"({"x": 1, "y": 0})");
@@ -225,4 +224,4 @@ TEST_F(ReproduceTest, AMinusIsNoFile) {
 }
 
 }  // namespace
-}  // namespace hires::cli::reproduce_test
+}  // namespace hires::lab::reproduce_test

@@ -9,7 +9,7 @@
 #include "support/messages.h"
 #include "support/temporary_folder.h"
 
-namespace hires::evaluation::reproduce_test {
+namespace hires::lab::reproduce_test {
 namespace {
 
 using nlohmann::ordered_json;
@@ -419,4 +419,4 @@ TEST(ShippedCatalogueTest, NoPlayIsPlayedForNothing) {
 }
 
 }  // namespace
-}  // namespace hires::evaluation::reproduce_test
+}  // namespace hires::lab::reproduce_test

@@ -8,7 +8,7 @@
 #include "support/messages.h"
 #include "support/temporary_folder.h"
 
-namespace hires::evaluation::scenario_series_test {
+namespace hires::lab::scenario_series_test {
 namespace {
 
 using hires::test_support::ConfigErrorOf;
@@ -151,4 +151,4 @@ TEST(TaskOfInstructionTest, LeavesOutWhatTheOriginalSaysMore) {
 }
 
 }  // namespace
-}  // namespace hires::evaluation::scenario_series_test
+}  // namespace hires::lab::scenario_series_test

@@ -12,7 +12,7 @@
 #include "support/messages.h"
 #include "support/temporary_folder.h"
 
-namespace hires::evaluation::scenario_variant_test {
+namespace hires::lab::scenario_variant_test {
 namespace {
 
 using hires::test_support::ConfigErrorOf;
@@ -31,11 +31,11 @@ std::string Move(const std::string& pose, const std::string& deltas,
 /// Where the parts of the restaurant are, as files say.
 struct Places {
   world::World world;
-  Scenario scenario;
+  sim_robot::Scenario scenario;
   std::vector<knowledge::Fluent> fluents;
 
   explicit Places(const VariantFiles& files)
-      : world(world::LoadWorld(files.world)), scenario(ReadScenario(files.scenario)) {
+      : world(world::LoadWorld(files.world)), scenario(sim_robot::ReadScenario(files.scenario)) {
     for (const std::string& path : scenario.knowledge) {
       const auto file = knowledge::LoadKnowledge(path);
       fluents.insert(fluents.end(), file.fluents.begin(), file.fluents.end());
@@ -58,7 +58,7 @@ struct Places {
     return found->X_MB;
   }
   geometry::Pose3 Object(const std::string& name) const {
-    for (const ScenarioObject& object : scenario.objects) {
+    for (const sim_robot::ScenarioObject& object : scenario.objects) {
       if (object.name == name) return object.X_MO;
     }
     throw std::runtime_error("no " + name);
@@ -73,7 +73,7 @@ class ScenarioVariantTest : public ::testing::Test {
     const std::vector<int> choices(read.groups.size(), 0);
     return WriteVariant(
         read, choices,
-        {ScenarioPath(scenario, kRoot + "/config/scenarios"), "", world, folder_.path().string()});
+        {sim_robot::ScenarioPath(scenario, kRoot + "/config/scenarios"), "", world, folder_.path().string()});
   }
   std::string ErrorOf(const std::string& series, const std::string& scenario = "serve_coffee",
                       const std::string& world = kRoot + "/worlds/restaurant.world") {
@@ -132,8 +132,8 @@ TEST_F(ScenarioVariantTest, NothingMovedIsTheSameWorld) {
   const VariantFiles files = Write(Move("poseTable1", "[]"));
   EXPECT_EQ(world::LoadWorld(files.world).hash,
             world::LoadWorld(kRoot + "/worlds/restaurant.world").hash);
-  const Scenario original = ReadScenario(kRoot + "/config/scenarios/serve_coffee.yaml");
-  const Scenario written = ReadScenario(files.scenario);
+  const sim_robot::Scenario original = sim_robot::ReadScenario(kRoot + "/config/scenarios/serve_coffee.yaml");
+  const sim_robot::Scenario written = sim_robot::ReadScenario(files.scenario);
   EXPECT_EQ(written.task, original.task);
   EXPECT_EQ(written.arms, original.arms);
   EXPECT_EQ(written.torso, original.torso);
@@ -214,8 +214,8 @@ TEST_F(ScenarioVariantTest, AMapHasOnlyRobotAndObjectsToMove) {
   const std::string map = folder_.Write("map.yaml", "image: none.pgm\n");
   const VariantFiles files = Write(Move("posePR21", "[[hasX, [1]]]"), "serve_coffee", map);
   EXPECT_EQ(files.world, map);
-  EXPECT_NEAR(ReadScenario(files.scenario).X_MB.x, 13.5, 1e-12);
+  EXPECT_NEAR(sim_robot::ReadScenario(files.scenario).X_MB.x, 13.5, 1e-12);
 }
 
 }  // namespace
-}  // namespace hires::evaluation::scenario_variant_test
+}  // namespace hires::lab::scenario_variant_test

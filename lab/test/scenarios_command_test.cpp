@@ -19,7 +19,7 @@
 #include "support/messages.h"
 #include "support/temporary_folder.h"
 
-namespace hires::cli::scenarios_command_test {
+namespace hires::lab::scenarios_command_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -392,4 +392,4 @@ TEST(ScenariosVerbTest, AScenarioInPlaceOfASeriesIsToldHowItIsPlayed) {
 }
 
 }  // namespace
-}  // namespace hires::cli::scenarios_command_test
+}  // namespace hires::lab::scenarios_command_test

@@ -13,7 +13,7 @@
 #include "support/messages.h"
 #include "support/temporary_folder.h"
 
-namespace hires::evaluation::series_report_test {
+namespace hires::lab::series_report_test {
 namespace {
 
 using hires::test_support::ConfigErrorOf;
@@ -230,7 +230,7 @@ TEST(SharesByChoiceTest, BrokenRunsSayNothingOfAChoice) {
   EXPECT_EQ(shares[0].played, 1);
   EXPECT_EQ(shares[1].succeeded, 0);
   EXPECT_EQ(shares[1].played, 2);
-  EXPECT_EQ(shares[1].share.upper, WilsonInterval(0, 2).upper);
+  EXPECT_EQ(shares[1].share.upper, reports::WilsonInterval(0, 2).upper);
 }
 
 TEST(SeriesCsvTest, HasAColumnForEachGroupAndQuotesWhatNeedsIt) {
@@ -296,4 +296,4 @@ TEST(SeriesJournalTest, KeepsRunsAndRefusesGaps) {
 }
 
 }  // namespace
-}  // namespace hires::evaluation::series_report_test
+}  // namespace hires::lab::series_report_test

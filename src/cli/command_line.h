@@ -63,7 +63,7 @@ struct Backends {
   std::string package_folder;  ///< where config/, worlds/, urdf/ lie
   ImagineRemotely imagine_remotely;
   ConnectBlackboard connect_blackboard;
-  evaluation::AchieveRemotely achieve_remotely;
+  loop::AchieveRemotely achieve_remotely;
   /// File of the domain that the running execution monitor was given; "": none runs, or none was.
   std::function<std::string()> domain_of_monitor;
   loop::RecordLoop record_loop;  ///< empty: this program writes no bags

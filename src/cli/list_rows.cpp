@@ -28,7 +28,7 @@ std::string TableOf(const ListRows& rows) {
     table.emplace_back();
     for (const auto& [column, value] : row.items()) table.back().push_back(CellOf(value));
   }
-  return evaluation::FormatTable(table);
+  return reports::FormatTable(table);
 }
 
 }  // namespace
@@ -39,7 +39,7 @@ void PrintList(const std::string& what, const ListRows& rows, const std::string&
     return;
   }
   std::cout << (rows.empty() ? fmt::format("no {}\n", what) : TableOf(rows));
-  if (!json.empty()) evaluation::WriteJson(ordered_json(rows), json);
+  if (!json.empty()) reports::WriteJson(ordered_json(rows), json);
 }
 
 }  // namespace hires::cli

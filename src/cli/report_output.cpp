@@ -119,7 +119,7 @@ void RequireWritable(const std::string& option, const std::string& path) {
     throw base::ConfigError(
         fmt::format("{} -: is no file; name one, or /dev/stdout to print it", option));
   }
-  evaluation::RequireFolderOf(path);
+  reports::RequireFolderOf(path);
   base::RequireReplaceable(path);
 }
 
@@ -174,7 +174,7 @@ void WriteReport(const ReportOptions& options, const ReportOrigin& origin,
   if (!IsWanted(options)) return;
   ordered_json report{{"report", HeadJson(options, origin)}};
   report.update(answer);
-  if (!options.json.empty()) evaluation::WriteJson(report, options.json);
+  if (!options.json.empty()) reports::WriteJson(report, options.json);
   // What the answer names beside it, pictures say, is found from its own file.
   const bool is_stored = !options.json.empty() && fs::is_regular_file(options.json);
   const std::string text =

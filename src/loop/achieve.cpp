@@ -9,7 +9,7 @@
 #include "hires/base/error.h"
 #include "hires/base/text.h"
 
-namespace hires::evaluation {
+namespace hires::loop {
 namespace {
 
 using execution::StepPhase;
@@ -86,4 +86,4 @@ std::string ToString(AchieveOutcome outcome) {
   return "";
 }
 
-}  // namespace hires::evaluation
+}  // namespace hires::loop

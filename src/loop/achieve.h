@@ -11,7 +11,7 @@
 #include "hires/execution/monitor.h"
 #include "hires/imagination/report.h"
 
-namespace hires::evaluation {
+namespace hires::loop {
 
 std::string ToString(execution::StepPhase phase);  ///< "waiting", "running", ...
 
@@ -85,4 +85,4 @@ using OnAchieveStatus = std::function<void(const AchieveStatus&)>;
 using AchieveRemotely = std::function<AchieveReport(const AchieveQuery&, const OnAchieveStatus&,
                                                     const std::function<bool()>& cancelled)>;
 
-}  // namespace hires::evaluation
+}  // namespace hires::loop

@@ -17,7 +17,7 @@ namespace hires::loop {
 struct ActionOrder {
   imagination::StartState start;  ///< as the robot believes; how it really is the truth draws
   base::ActionCall action;
-  evaluation::Truth truth;   ///< what robot and world are really like
+  sim_robot::Truth truth;    ///< what robot and world are really like
   std::uint64_t seed{1};     ///< of what of it is hidden, and of all noise
   double time_limit{300.0};  ///< [s] of virtual time
 };

@@ -18,8 +18,6 @@
 namespace hires::loop {
 namespace {
 
-using evaluation::ImaginedOutcome;
-using evaluation::ImaginedStep;
 using execution::ImagineAnswered;
 using imagination::Assign;
 using imagination::Report;

@@ -58,7 +58,7 @@ class ImaginationDesk {
   void CancelAll();
 
   /// Of all requests, in their order; `dispatch` is not filled in.
-  const std::vector<evaluation::ImaginedStep>& steps() const { return steps_; }
+  const std::vector<ImaginedStep>& steps() const { return steps_; }
 
  private:
   struct Session;
@@ -78,7 +78,7 @@ class ImaginationDesk {
   void BreakOff(const SessionPtr& session);
   void Refuse(const SessionPtr& session, execution::ImagineAnswered::Outcome outcome,
               const std::string& why);
-  void End(const SessionPtr& session, evaluation::ImaginedOutcome outcome);
+  void End(const SessionPtr& session, ImaginedOutcome outcome);
 
   const imagination::ImaginationSetup& setup_;
   const translation::TranslatorContext& context_;
@@ -93,7 +93,7 @@ class ImaginationDesk {
   imagination::KeptRollouts kept_;
   std::optional<imagination::BelievedPose> believed_;
   std::vector<double> free_from_;  // [s] each worker, after all that it was assigned
-  std::vector<evaluation::ImaginedStep> steps_;
+  std::vector<ImaginedStep> steps_;
 };
 
 }  // namespace hires::loop

@@ -26,7 +26,7 @@ struct TrayScan {
 /// What the robot's sensors say at one moment, as one who listens to them gets it.
 struct SensorNews {
   double stamp{0.0};  ///< [s]
-  evaluation::SensorReadings readings;
+  sim_robot::SensorReadings readings;
   /// With the moments at which the laser, the localisation and the camera speak, too.
   bool is_tick{false};
   std::vector<double> scan;  ///< [m]; empty: the robot has no laser
@@ -56,7 +56,7 @@ class LoopRecording {
   virtual ~LoopRecording() = default;
   virtual LoopObserver observer() = 0;  ///< @pre this outlives it
   /// The task is over: what was planned and predicted.
-  virtual void Finish(const evaluation::AchieveReport& report) = 0;
+  virtual void Finish(const AchieveReport& report) = 0;
 };
 /// @throws base::ConfigError if the file `path` cannot be written.
 using RecordLoop = std::function<std::unique_ptr<LoopRecording>(const std::string& path)>;

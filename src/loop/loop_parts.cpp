@@ -82,7 +82,7 @@ LoopConfig ReadLoopConfig(const std::string& path, const LoopFiles& files) {
   config.execution = execution::ReadMonitorConfig(file("execution_monitor"));
   config.scene = imagination::ReadSetupConfig(config.imagination.scene);
   ReadMiddleLayer(file("middle_layer"), &config);
-  config.sensors = evaluation::ReadSimSensorParams(ParamReader::FromFile(file("sim_robot")));
+  config.sensors = sim_robot::ReadSimSensorParams(ParamReader::FromFile(file("sim_robot")));
   config.tracker = ReadTracker(file("world_tracker"));
   config.tracker.warm = perception::ReadWarmParams(ParamReader::FromFile(file("heat_reader")));
   config.recogniser = file("recogniser");
@@ -117,19 +117,19 @@ const imagination::ClientConfig& LoopSetup::imagination() const {
 
 const planning::OperatorData& LoopSetup::operators() const { return parts_->operators; }
 
-evaluation::Truth LoopSetup::Parts::ReadTruth(const std::string& name) const {
-  return evaluation::FindTruth(name, config.truths);
+sim_robot::Truth LoopSetup::Parts::ReadTruth(const std::string& name) const {
+  return sim_robot::FindTruth(name, config.truths);
 }
 
-evaluation::SimSensorParams LoopSetup::Parts::SensorsUnder(const evaluation::Truth& truth) const {
-  evaluation::SimSensorParams sensors = evaluation::SensorsOf(truth, config.sensors);
+sim_robot::SimSensorParams LoopSetup::Parts::SensorsUnder(const sim_robot::Truth& truth) const {
+  sim_robot::SimSensorParams sensors = sim_robot::SensorsOf(truth, config.sensors);
   if (!sensors.sees_pictures) return sensors;
   const auto known = perception::ReadRecogniserConfig(config.recogniser, config.scene.objects);
   sensors.eye = std::make_shared<const perception::Recogniser>(known.catalogue, known.params);
   return sensors;
 }
 
-evaluation::Truth LoopSetup::ReadTruth(const std::string& name) const {
+sim_robot::Truth LoopSetup::ReadTruth(const std::string& name) const {
   return parts_->ReadTruth(name);
 }
 

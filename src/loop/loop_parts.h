@@ -32,7 +32,7 @@ struct LoopConfig {
   execution::MonitorConfig execution;
   control::RunnerParams runner;
   sensing::ScanParams scan;
-  evaluation::SimSensorParams sensors;
+  sim_robot::SimSensorParams sensors;
   TrackerParams tracker;
   ImaginationPace pace;
   std::string recogniser;      ///< file: what is known of things on tables
@@ -46,9 +46,9 @@ LoopConfig ReadLoopConfig(const std::string& path, const LoopFiles& files);
 
 struct LoopSetup::Parts {
   Parts(const std::string& path, const LoopFiles& files);
-  evaluation::Truth ReadTruth(const std::string& name) const;  ///< as LoopSetup's
+  sim_robot::Truth ReadTruth(const std::string& name) const;  ///< as LoopSetup's
   /// Sensors of the robot under a truth, with what it recognises things by.
-  evaluation::SimSensorParams SensorsUnder(const evaluation::Truth& truth) const;
+  sim_robot::SimSensorParams SensorsUnder(const sim_robot::Truth& truth) const;
 
   LoopConfig config;
   imagination::ImaginationSetup world;

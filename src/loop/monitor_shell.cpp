@@ -12,9 +12,6 @@
 namespace hires::loop {
 namespace {
 
-using evaluation::AchieveOutcome;
-using evaluation::AchieveReport;
-using evaluation::AchieveStatus;
 using execution::Finish;
 
 execution::MonitorParams ParamsOf(const LoopSetup::Parts& parts, const LoopOrder& order) {
@@ -120,7 +117,7 @@ AchieveStatus MonitorShell::Status() const {
     status.replans = std::max(status.replans, step.plan);
   }
   status.imaginations = imagination_.steps();
-  for (evaluation::ImaginedStep& imagined : status.imaginations) {
+  for (ImaginedStep& imagined : status.imaginations) {
     imagined.dispatch =
         imagination::DispatchOf(status.steps, imagined.plan, imagined.step, imagined.action);
   }

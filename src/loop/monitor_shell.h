@@ -37,8 +37,8 @@ class MonitorShell {
   bool has_begun() const { return has_begun_; }
   bool is_over() const { return finish_.has_value(); }
   std::int64_t episode() const { return records_.episode(); }
-  evaluation::AchieveStatus Status() const;
-  evaluation::AchieveReport Report() const;  ///< @pre is_over()
+  AchieveStatus Status() const;
+  AchieveReport Report() const;  ///< @pre is_over()
 
  private:
   void Feed(const execution::Event& event);

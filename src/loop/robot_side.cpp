@@ -12,14 +12,14 @@ const long kTrayPeriod = std::lround(1000.0 * sensing::ObjectEstimator::kScanPer
 }  // namespace
 
 RobotSide::RobotSide(const LoopSetup::Parts& parts, const imagination::StartState& start,
-                     const evaluation::Truth& truth, const evaluation::SimSensorParams& sensors,
+                     const sim_robot::Truth& truth, const sim_robot::SimSensorParams& sensors,
                      std::uint64_t seed, VirtualClock* clock, Hooks hooks)
     : clock_(*clock),
       hooks_(std::move(hooks)),
       world_(parts.world, start, seed, truth),
       sensors_(sensors, seed, world_.scene()),
       truth_(parts.world.standing) {
-  const evaluation::SimRobotLasers& lasers = sensors_.lasers();
+  const sim_robot::SimRobotLasers& lasers = sensors_.lasers();
   if (hooks_.hears_clouds && lasers.has_tilting_laser())
     gathering_.emplace(lasers.num_scans_of_a_sweep());
 }
@@ -40,7 +40,7 @@ void RobotSide::Tick() {
   news.is_tick = true;
   if (sensors_.has_laser()) news.scan = sensors_.Scan(world_, news.readings);
   news.seen = sensors_.Look(world_, news.readings);
-  const evaluation::SimRobotLasers& lasers = sensors_.lasers();
+  const sim_robot::SimRobotLasers& lasers = sensors_.lasers();
   if (lasers.has_tray_laser() && world_.milliseconds() % kTrayPeriod == 0) {
     news.tray =
         TrayScan{lasers.tray().link, simulation::ReadingOf(lasers.TrayScan(world_), lasers.tray())};
@@ -57,7 +57,7 @@ void RobotSide::Tick() {
 
 /// The world is ahead of the clock by a tick at most; what it says waits for its time.
 void RobotSide::Advance() {
-  for (long done = 0; done < evaluation::kSensorTick; done += evaluation::kJointTick) {
+  for (long done = 0; done < sim_robot::kSensorTick; done += sim_robot::kJointTick) {
     if (done > 0) {
       SensorNews news;
       news.stamp = Stamp();
@@ -66,9 +66,9 @@ void RobotSide::Advance() {
       clock_.At(stamp, [this, news = std::move(news)] { hooks_.hear(news); });
     }
     if (gathering_) {
-      evaluation::PlayJointTick(&world_, &truth_, [this] { Sweep(); });
+      sim_robot::PlayJointTick(&world_, &truth_, [this] { Sweep(); });
     } else {
-      evaluation::PlayJointTick(&world_, &truth_);
+      sim_robot::PlayJointTick(&world_, &truth_);
     }
   }
 }
@@ -76,7 +76,7 @@ void RobotSide::Advance() {
 /// The laser that nods measures, if it is its time; a sweep that is over is told of with the next
 /// tick.
 void RobotSide::Sweep() {
-  const evaluation::SimRobotLasers& lasers = sensors_.lasers();
+  const sim_robot::SimRobotLasers& lasers = sensors_.lasers();
   if (!lasers.IsTiltDue(world_)) return;
   auto cloud = gathering_->Add(lasers.TiltPhase(world_), lasers.tilting(), lasers.TiltScan(world_),
                                lasers.X_OTilt(world_, readings_));

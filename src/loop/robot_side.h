@@ -26,7 +26,7 @@ class RobotSide {
 
   /// @param sensors  under this truth.  @pre all outlive this.
   RobotSide(const LoopSetup::Parts& parts, const imagination::StartState& start,
-            const evaluation::Truth& truth, const evaluation::SimSensorParams& sensors,
+            const sim_robot::Truth& truth, const sim_robot::SimSensorParams& sensors,
             std::uint64_t seed, VirtualClock* clock, Hooks hooks);
 
   void Begin();
@@ -44,12 +44,12 @@ class RobotSide {
 
   VirtualClock& clock_;
   const Hooks hooks_;
-  evaluation::SimRobotWorld world_;
-  evaluation::SimRobotSensors sensors_;
+  sim_robot::SimRobotWorld world_;
+  sim_robot::SimRobotSensors sensors_;
   simulation::TruthRecord truth_;
   std::vector<robot::Command> commands_;
-  evaluation::SensorReadings readings_;  // of the last tick
-  std::optional<evaluation::SweepCloud> gathering_;
+  sim_robot::SensorReadings readings_;  // of the last tick
+  std::optional<sim_robot::SweepCloud> gathering_;
   std::shared_ptr<const perception::PointCloud> sweep_;  // over and not told of yet
 };
 

@@ -43,7 +43,7 @@ StepFinished FinishedAs(int activity, ActionEnd end, const base::Failure& failur
   return {activity, StepFinished::Result::kFailed, failure};
 }
 
-LoopOrder Completed(const LoopOrder& order, const evaluation::Scenario& scenario,
+LoopOrder Completed(const LoopOrder& order, const sim_robot::Scenario& scenario,
                     const LoopSetup::Parts& parts) {
   LoopOrder complete = order;
   if (complete.task.empty()) complete.task = scenario.task;
@@ -51,9 +51,9 @@ LoopOrder Completed(const LoopOrder& order, const evaluation::Scenario& scenario
   return complete;
 }
 
-evaluation::SimSensorParams SensorsIn(const std::string& scenario,
-                                      evaluation::SimSensorParams sensors) {
-  sensors.cameras.temperatures = evaluation::TemperaturesOf(scenario);
+sim_robot::SimSensorParams SensorsIn(const std::string& scenario,
+                                     sim_robot::SimSensorParams sensors) {
+  sensors.cameras.temperatures = sim_robot::TemperaturesOf(scenario);
   return sensors;
 }
 
@@ -72,7 +72,7 @@ struct Lines {
 /// All parts of one task, wired.
 class Play {
  public:
-  Play(const LoopSetup::Parts& parts, const LoopOrder& order, const evaluation::Scenario& scenario,
+  Play(const LoopSetup::Parts& parts, const LoopOrder& order, const sim_robot::Scenario& scenario,
        const LoopObserver& observer)
       : observer_(observer),
         order_(Completed(order, scenario, parts)),
@@ -82,7 +82,7 @@ class Play {
         blackboard_(parts.ontology, order.store),
         pool_(order.threads),
         robot_(
-            parts, evaluation::StartOf(parts.world, order.scenario, ""), truth_,
+            parts, sim_robot::StartOf(parts.world, order.scenario, ""), truth_,
             SensorsIn(order.scenario, parts.SensorsUnder(truth_)), order.seed, &clock_,
             {[this](const SensorNews& news) { Hear(news); }, [this](double stamp) { Look(stamp); },
              true, parts.world.sensing.ground.is_enabled}),
@@ -108,8 +108,7 @@ class Play {
     OnWritten();
   }
 
-  LoopRun Run(const evaluation::OnAchieveStatus& on_status,
-              const std::function<bool()>& cancelled) {
+  LoopRun Run(const OnAchieveStatus& on_status, const std::function<bool()>& cancelled) {
     robot_.Begin();
     LoopRun run;
     double next_status = 0.0, end = order_.time_limit + kStart;
@@ -205,7 +204,7 @@ class Play {
 
   const LoopObserver& observer_;
   const LoopOrder order_;
-  const evaluation::Truth truth_;
+  const sim_robot::Truth truth_;
   VirtualClock clock_;
   Lines lines_;
   Blackboard blackboard_;
@@ -220,21 +219,20 @@ class Play {
 }  // namespace
 
 void RequireTask(const LoopSetup& setup, const std::string& scenario, const std::string& task) {
-  RequireKnownNames(setup.parts(), evaluation::ReadScenario(scenario), task,
+  RequireKnownNames(setup.parts(), sim_robot::ReadScenario(scenario), task,
                     StrangeArgument::kRefused);
 }
 
-LoopRun PlayTask(const LoopSetup& setup, const LoopOrder& order,
-                 const evaluation::OnAchieveStatus& on_status,
+LoopRun PlayTask(const LoopSetup& setup, const LoopOrder& order, const OnAchieveStatus& on_status,
                  const std::function<bool()>& cancelled, const LoopObserver& observer) {
   if (!order.store.empty() && std::filesystem::exists(order.store)) {
     throw base::ConfigError(order.store +
                             ": is there already; name a new file, for the Blackboard is to know "
                             "what holds at first and nothing else");
   }
-  const evaluation::Scenario scenario = evaluation::ReadScenario(order.scenario);
+  const sim_robot::Scenario scenario = sim_robot::ReadScenario(order.scenario);
   const std::string& task = order.task.empty() ? scenario.task : order.task;
-  for (const auto& misfit : evaluation::NamesThatDoNotFit(scenario, order.scenario, task)) {
+  for (const auto& misfit : sim_robot::NamesThatDoNotFit(scenario, order.scenario, task)) {
     base::Log(base::LogLevel::kWarn, misfit);
   }
   return Play(setup.parts(), order, scenario, observer).Run(on_status, cancelled);

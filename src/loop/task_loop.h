@@ -36,7 +36,7 @@ class LoopSetup {
   const imagination::ClientConfig& imagination() const;  ///< what a request does not say itself
   const planning::OperatorData& operators() const;
   /// @param name  of config/truths, or a file; empty: same.  @throws base::ConfigError
-  evaluation::Truth ReadTruth(const std::string& name) const;
+  sim_robot::Truth ReadTruth(const std::string& name) const;
 
   struct Parts;
   const Parts& parts() const { return *parts_; }
@@ -62,7 +62,7 @@ struct LoopOrder {
 
 /// What became of it.
 struct LoopRun {
-  evaluation::AchieveReport report;
+  AchieveReport report;
   simulation::RunTruth truth;   ///< how things really stand in the end
   std::string truth_name;       ///< of what robot and world were really like: same, foreign, ...
   double virtual_seconds{0.0};  ///< [s] from the robot's start to the end
@@ -83,7 +83,7 @@ void RequireTask(const LoopSetup& setup, const std::string& scenario, const std:
 /// @param observer   told of what happens; changes nothing.
 /// @throws base::ConfigError for a scenario, a truth or a task that makes no sense.
 LoopRun PlayTask(const LoopSetup& setup, const LoopOrder& order,
-                 const evaluation::OnAchieveStatus& on_status = {},
-                 const std::function<bool()>& cancelled = {}, const LoopObserver& observer = {});
+                 const OnAchieveStatus& on_status = {}, const std::function<bool()>& cancelled = {},
+                 const LoopObserver& observer = {});
 
 }  // namespace hires::loop

@@ -104,13 +104,13 @@ std::string Typed(const std::string& symbol, const std::string& task) {
   return place == std::string::npos ? symbol : task.substr(place, symbol.size());
 }
 
-KnownNames NamesOf(const LoopSetup::Parts& parts, const evaluation::Scenario& scenario) {
+KnownNames NamesOf(const LoopSetup::Parts& parts, const sim_robot::Scenario& scenario) {
   KnownNames known;
   for (const std::string& file : scenario.knowledge) AddKnowledge(file, &known);
   AddWorld(parts.world, &known);
   AddRobot(parts.world.scene->robot.profile, &known);
   for (const std::string& name : parts.ontology->ConceptNames()) known.AddWord(name);
-  for (const evaluation::ScenarioObject& object : scenario.objects) known.Add(object.name);
+  for (const sim_robot::ScenarioObject& object : scenario.objects) known.Add(object.name);
   AddPlanning(parts.planning, &known);
   return known;
 }
@@ -128,7 +128,7 @@ planning::Problem ProblemOf(const LoopSetup::Parts& parts, const std::string& ta
 
 }  // namespace
 
-void RequireKnownNames(const LoopSetup::Parts& parts, const evaluation::Scenario& scenario,
+void RequireKnownNames(const LoopSetup::Parts& parts, const sim_robot::Scenario& scenario,
                        const std::string& task, StrangeArgument strange) {
   const planning::Problem problem = ProblemOf(parts, task);
   // HDDL declares its objects, and its reader has compared them.

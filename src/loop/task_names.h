@@ -17,7 +17,7 @@ enum class StrangeArgument { kWarnedOf, kRefused };
 /// @param task  as it was typed.
 /// @throws base::ConfigError for a task that the domain lacks or takes with other arguments, and
 /// for an argument that is spelt like a known name.
-void RequireKnownNames(const LoopSetup::Parts& parts, const evaluation::Scenario& scenario,
+void RequireKnownNames(const LoopSetup::Parts& parts, const sim_robot::Scenario& scenario,
                        const std::string& task, StrangeArgument strange);
 
 }  // namespace hires::loop

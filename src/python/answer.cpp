@@ -9,7 +9,7 @@
 namespace hires::python {
 
 std::string JsonOf(const Answer& answer) {
-  return evaluation::ToJson(answer.report, answer.criteria).dump(2);
+  return reports::ToJson(answer.report, answer.criteria).dump(2);
 }
 
 std::map<std::string, int> FailuresOf(const imagination::Prediction& prediction) {

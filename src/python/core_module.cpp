@@ -171,7 +171,7 @@ void BindAlternative(py::module_* m) {
 void BindAnswer(py::module_* m) {
   py::class_<Answer>(*m, "Answer", "The answer to one request.")
       .def_property_readonly(
-          "outcome", [](const Answer& a) { return hires::evaluation::OutcomeName(a.report); },
+          "outcome", [](const Answer& a) { return hires::reports::OutcomeName(a.report); },
           "'ranked', 'ranked_at_deadline', 'all_failed', 'undecided', 'nothing_finished'")
       .def_property_readonly(
           "why", [](const Answer& a) { return a.report.why; }, "One sentence.")

@@ -11,7 +11,7 @@
 #include "hires/base/hash.h"
 #include "hires/base/text.h"
 
-namespace hires::evaluation {
+namespace hires::reports {
 namespace {
 
 namespace fs = std::filesystem;
@@ -80,4 +80,4 @@ std::string InputHash(const std::string& package_folder, const std::string& inpu
   return base::HexOf(hasher.value());
 }
 
-}  // namespace hires::evaluation
+}  // namespace hires::reports

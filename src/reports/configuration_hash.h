@@ -2,7 +2,7 @@
 
 #include <string>
 
-namespace hires::evaluation {
+namespace hires::reports {
 
 /// Of what a series of runs reads: all below config/, worlds/ and urdf/, by name and content. A
 /// printed result is stale where it carries another one. Comments and white space of YAML files
@@ -15,4 +15,4 @@ std::string ConfigurationHash(const std::string& package_folder);
 /// The same of one file or folder of the package, experiments included: "config", "worlds".
 std::string InputHash(const std::string& package_folder, const std::string& input);
 
-}  // namespace hires::evaluation
+}  // namespace hires::reports

@@ -9,7 +9,7 @@
 
 #include "reports/statistics.h"
 
-namespace hires::evaluation {
+namespace hires::reports {
 
 /// What is not a finite number is not known: null.
 inline nlohmann::ordered_json NumberOrNull(double value) {
@@ -30,4 +30,4 @@ inline std::string NumberText(double value, int digits) {
   return std::isfinite(value) ? fmt::format("{:.{}f}", value, digits) : "-";
 }
 
-}  // namespace hires::evaluation
+}  // namespace hires::reports

@@ -8,7 +8,7 @@
 #include "hires/base/error.h"
 #include "hires/base/text.h"
 
-namespace hires::evaluation {
+namespace hires::reports {
 namespace {
 
 namespace fs = std::filesystem;
@@ -148,4 +148,4 @@ void WriteJson(const nlohmann::ordered_json& json, const std::string& path) {
   base::ReplaceTextFile(path, text);
 }
 
-}  // namespace hires::evaluation
+}  // namespace hires::reports

@@ -7,7 +7,7 @@
 #include "hires/base/failure.h"
 #include "hires/imagination/report.h"
 
-namespace hires::evaluation {
+namespace hires::reports {
 
 /// "ranked", "ranked_at_deadline" (cut short), "all_failed", "undecided", "no_worker",
 /// "nothing_finished", "cancelled".
@@ -39,4 +39,4 @@ void RequireFolder(const std::string& option, const std::string& folder);
 /// @throws base::ConfigError if the file cannot be written.
 void WriteJson(const nlohmann::ordered_json& json, const std::string& path);
 
-}  // namespace hires::evaluation
+}  // namespace hires::reports

@@ -7,7 +7,7 @@
 
 #include "hires/base/text.h"
 
-namespace hires::evaluation {
+namespace hires::reports {
 namespace {
 
 /// Characters as a terminal shows them: UTF-8 continuation bytes take no place.
@@ -119,4 +119,4 @@ std::string ProgressLine(const imagination::Progress& progress, int width) {
   return line;
 }
 
-}  // namespace hires::evaluation
+}  // namespace hires::reports

@@ -5,7 +5,7 @@
 
 #include "hires/imagination/report.h"
 
-namespace hires::evaluation {
+namespace hires::reports {
 
 /// Columns of text, the first row underlined as heads; numbers to the right.
 std::string FormatTable(const std::vector<std::vector<std::string>>& rows);
@@ -19,4 +19,4 @@ std::string RankingTable(const std::vector<imagination::Prediction>& ranking, in
 /// "[#####.....]  52 %  33 of 64 rollouts, 4 s left" in at most `width` characters.
 std::string ProgressLine(const imagination::Progress& progress, int width = 78);
 
-}  // namespace hires::evaluation
+}  // namespace hires::reports

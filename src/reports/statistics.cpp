@@ -10,7 +10,7 @@
 
 #include "hires/base/check.h"
 
-namespace hires::evaluation {
+namespace hires::reports {
 namespace {
 
 constexpr double kTail = 0.025;
@@ -265,4 +265,4 @@ double SignFlipPValue(const std::vector<double>& differences, base::Rng rng) {
                                      : ShareOfDrawnFlips(sizes, bound, &rng);
 }
 
-}  // namespace hires::evaluation
+}  // namespace hires::reports

@@ -4,7 +4,7 @@
 
 #include "hires/base/rng.h"
 
-namespace hires::evaluation {
+namespace hires::reports {
 
 double Mean(const std::vector<double>& values);       ///< 0 for no values
 double Deviation(const std::vector<double>& values);  ///< divides by n, as the dissertation does
@@ -91,4 +91,4 @@ double McNemarPValue(const PairedCounts& counts);
 /// Appl. Genet. Mol. Biol. 9:39], so that the test keeps its level. 1 without differences.
 double SignFlipPValue(const std::vector<double>& differences, base::Rng rng);
 
-}  // namespace hires::evaluation
+}  // namespace hires::reports

@@ -8,12 +8,12 @@
 #include "hires/base/text.h"
 #include "reports/report_table.h"
 
-namespace hires::evaluation {
+namespace hires::reports {
 namespace {
 
 constexpr std::size_t kLongestName = 58;  // characters in the text
 
-TimelineBar BarOf(const ImaginedStep& step, double begin, double end) {
+TimelineBar BarOf(const loop::ImaginedStep& step, double begin, double end) {
   TimelineBar bar;
   bar.kind = TimelineBar::Kind::kImagination;
   bar.plan = step.plan;
@@ -95,7 +95,7 @@ std::string CsvLine(const TimelineBar& bar) {
                      is_step ? "" : fmt::format("{:.3f}", bar.simulated_seconds), Quoted(bar.note));
 }
 
-std::string InTime(const ImaginedStep& step) {
+std::string InTime(const loop::ImaginedStep& step) {
   if (!step.dispatch) return "never begun";
   if (!step.answered) return "no";
   return fmt::format("{:+.1f} s", *step.dispatch - *step.answered);
@@ -105,7 +105,7 @@ std::string Ratio(double part, double whole) {
   return whole > 0.0 ? fmt::format("{:.2f}", part / whole) : "";
 }
 
-int RolloutsOf(const ImaginedStep& step) {
+int RolloutsOf(const loop::ImaginedStep& step) {
   int rollouts = 0;
   for (const auto& prediction : step.predictions) rollouts += prediction.evidence.num_rollouts;
   return rollouts;
@@ -113,13 +113,13 @@ int RolloutsOf(const ImaginedStep& step) {
 
 }  // namespace
 
-Timeline MakeTimeline(const AchieveReport& report) {
-  const AchieveStatus& status = report.status;
-  const double begin = BeginOf(status);
+Timeline MakeTimeline(const loop::AchieveReport& report) {
+  const loop::AchieveStatus& status = report.status;
+  const double begin = loop::BeginOf(status);
   Timeline timeline;
   timeline.task = report.task;
   timeline.outcome = report.outcome;
-  for (const ImaginedStep& step : status.imaginations) {
+  for (const loop::ImaginedStep& step : status.imaginations) {
     timeline.bars.push_back(BarOf(step, begin, status.now));
   }
   const auto num_imaginations = static_cast<std::ptrdiff_t>(timeline.bars.size());
@@ -148,7 +148,7 @@ std::string TimelineText(const Timeline& timeline, int width) {
   return text;
 }
 
-std::string ImaginationTable(const AchieveReport& report, bool is_virtual) {
+std::string ImaginationTable(const loop::AchieveReport& report, bool is_virtual) {
   const double duration = MakeTimeline(report).duration;
   if (report.status.imaginations.empty()) return "";
   // In virtual time imagining takes as long as config/loop.yaml says: there is nothing to measure.
@@ -156,7 +156,7 @@ std::string ImaginationTable(const AchieveReport& report, bool is_virtual) {
   std::vector<std::vector<std::string>> rows{{"imagined", "outcome", "rollouts", "simulated", took,
                                               is_virtual ? "as configured" : "factor",
                                               took + " / task", "before its step"}};
-  for (const ImaginedStep& step : report.status.imaginations) {
+  for (const loop::ImaginedStep& step : report.status.imaginations) {
     rows.push_back({ToString(step.action), ToString(step.outcome), std::to_string(RolloutsOf(step)),
                     fmt::format("{:.1f} s", step.simulated_seconds),
                     fmt::format("{:.1f} s", step.wall_seconds),
@@ -176,4 +176,4 @@ std::string TimelineCsv(const Timeline& timeline) {
   return csv;
 }
 
-}  // namespace hires::evaluation
+}  // namespace hires::reports

@@ -7,7 +7,7 @@
 
 #include "loop/achieve.h"
 
-namespace hires::evaluation {
+namespace hires::reports {
 
 /// A stretch of time in which the robot did a step, or imagined one. Times are [s] after the task's
 /// begin.
@@ -26,11 +26,11 @@ struct TimelineBar {
 /// What was done when, as the dissertation's Fig. 6.13.
 struct Timeline {
   std::string task;
-  AchieveOutcome outcome{AchieveOutcome::kFailed};
+  loop::AchieveOutcome outcome{loop::AchieveOutcome::kFailed};
   double duration{0.0};           ///< [s] from the first bar's begin to the last one's end
   std::vector<TimelineBar> bars;  ///< imaginations first, each kind by its begin
 };
-Timeline MakeTimeline(const AchieveReport& report);
+Timeline MakeTimeline(const loop::AchieveReport& report);
 
 /// Bars of characters, one line each, `width` characters for the whole duration. Imagined steps and
 /// the steps that they are about are marked.
@@ -39,12 +39,12 @@ std::string TimelineText(const Timeline& timeline, int width = 48);
 /// What the imaginations took, as the dissertation's Table 6.7: seconds simulated, seconds of the
 /// wall's clock, and whether the answer came before the step began. "" where there were none.
 /// @param is_virtual  the wall's seconds are virtual ones, as configured.
-std::string ImaginationTable(const AchieveReport& report, bool is_virtual = false);
+std::string ImaginationTable(const loop::AchieveReport& report, bool is_virtual = false);
 
 /// Comma-separated values with a head; the first line is the task itself.
 std::string TimelineCsv(const Timeline& timeline);
 
 /// Everything for machines.
-nlohmann::ordered_json ToJson(const AchieveReport& report);
+nlohmann::ordered_json ToJson(const loop::AchieveReport& report);
 
-}  // namespace hires::evaluation
+}  // namespace hires::reports

@@ -9,7 +9,7 @@
 #include "reports/report_json.h"
 #include "reports/timeline.h"
 
-namespace hires::evaluation {
+namespace hires::reports {
 namespace {
 
 using nlohmann::ordered_json;
@@ -48,7 +48,7 @@ ordered_json PredictionToJson(const imagination::Prediction& prediction) {
           {"failures", FailuresToJson(evidence.failures)}};
 }
 
-ordered_json ImaginedToJson(const ImaginedStep& step) {
+ordered_json ImaginedToJson(const loop::ImaginedStep& step) {
   ordered_json predictions = ordered_json::array();
   for (const auto& prediction : step.predictions) {
     predictions.push_back(PredictionToJson(prediction));
@@ -84,7 +84,7 @@ ordered_json BarToJson(const TimelineBar& bar) {
 
 }  // namespace
 
-ordered_json ToJson(const AchieveReport& report) {
+ordered_json ToJson(const loop::AchieveReport& report) {
   ordered_json steps = ordered_json::array(), imaginations = ordered_json::array();
   ordered_json bars = ordered_json::array();
   const Timeline timeline = MakeTimeline(report);
@@ -98,11 +98,11 @@ ordered_json ToJson(const AchieveReport& report) {
           {"episode", report.episode},
           {"replans", report.status.replans},
           {"duration", timeline.duration},
-          {"begin", BeginOf(report.status)},
+          {"begin", loop::BeginOf(report.status)},
           {"steps", steps},
           {"imaginations", imaginations},
           {"timeline", bars},
           {"warnings", report.status.warnings}};
 }
 
-}  // namespace hires::evaluation
+}  // namespace hires::reports

@@ -4,7 +4,7 @@
 
 #include "hires/geometry/angles.h"
 
-namespace hires::evaluation {
+namespace hires::sim_robot {
 
 using geometry::kPi;
 
@@ -29,4 +29,4 @@ std::optional<geometry::Twist2> BumpSchedule::PushAt(double time) {
   return geometry::Twist2{push * std::cos(bearing_), push * std::sin(bearing_), 0.0};
 }
 
-}  // namespace hires::evaluation
+}  // namespace hires::sim_robot

@@ -6,7 +6,7 @@
 #include "hires/geometry/pose.h"
 #include "sim_robot/truth.h"
 
-namespace hires::evaluation {
+namespace hires::sim_robot {
 
 /// When somebody bumps into the base, from where and how hard: independent of everything else.
 class BumpSchedule {
@@ -27,4 +27,4 @@ class BumpSchedule {
   double bearing_{0.0};  // [rad]
 };
 
-}  // namespace hires::evaluation
+}  // namespace hires::sim_robot

@@ -5,7 +5,7 @@
 
 #include "hires/base/text.h"
 
-namespace hires::evaluation {
+namespace hires::sim_robot {
 namespace {
 
 using robot::BaseControllerParams;
@@ -64,4 +64,4 @@ void ChangeController(const Truth& truth, BaseControllerParams* params) {
   }
 }
 
-}  // namespace hires::evaluation
+}  // namespace hires::sim_robot

@@ -12,7 +12,7 @@
 #include "hires/simulation/laser_scanner.h"
 #include "hires/simulation/robot_simulator.h"
 
-namespace hires::evaluation {
+namespace hires::sim_robot {
 namespace {
 
 using geometry::Pose2;
@@ -186,4 +186,4 @@ std::optional<MapDrive> DriveForMap(const imagination::ImaginationSetup& setup,
   return MapDriver(setup, params).Drive(task, cancelled);
 }
 
-}  // namespace hires::evaluation
+}  // namespace hires::sim_robot

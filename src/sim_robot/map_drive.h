@@ -10,7 +10,7 @@
 #include "hires/localisation/robot_log.h"
 #include "hires/simulation/self_localisation.h"
 
-namespace hires::evaluation {
+namespace hires::sim_robot {
 
 struct MapDriveParams {
   simulation::SelfLocalisationParams senses;  ///< wheels, inertial unit and laser, how they err
@@ -41,4 +41,4 @@ std::optional<MapDrive> DriveForMap(const imagination::ImaginationSetup& setup,
                                     const MapDriveParams& params, const std::string& task,
                                     const std::function<bool()>& cancelled);
 
-}  // namespace hires::evaluation
+}  // namespace hires::sim_robot

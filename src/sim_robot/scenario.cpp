@@ -8,7 +8,7 @@
 #include "hires/base/param_reader.h"
 #include "hires/base/text.h"
 
-namespace hires::evaluation {
+namespace hires::sim_robot {
 namespace {
 
 constexpr double kFar = 1000.0;                       // [m] worlds are not larger
@@ -106,4 +106,4 @@ std::map<std::string, double> TemperaturesOf(const std::string& scenario) {
   return temperatures;
 }
 
-}  // namespace hires::evaluation
+}  // namespace hires::sim_robot

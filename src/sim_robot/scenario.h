@@ -7,7 +7,7 @@
 
 #include "hires/geometry/pose.h"
 
-namespace hires::evaluation {
+namespace hires::sim_robot {
 
 /// One loose object where it really stands.
 struct ScenarioObject {
@@ -43,4 +43,4 @@ Scenario ReadScenario(const std::string& path);
 /// @throws base::ConfigError as ReadScenario.
 std::map<std::string, double> TemperaturesOf(const std::string& scenario);
 
-}  // namespace hires::evaluation
+}  // namespace hires::sim_robot

@@ -9,7 +9,7 @@
 #include "hires/base/text.h"
 #include "hires/knowledge/fluent_yaml.h"
 
-namespace hires::evaluation {
+namespace hires::sim_robot {
 namespace {
 
 using base::ToLower;
@@ -100,4 +100,4 @@ std::vector<std::string> NamesThatDoNotFit(const Scenario& scenario, const std::
   return misfits;
 }
 
-}  // namespace hires::evaluation
+}  // namespace hires::sim_robot

@@ -5,7 +5,7 @@
 
 #include "sim_robot/scenario.h"
 
-namespace hires::evaluation {
+namespace hires::sim_robot {
 
 /// What is wrong with the names by which scenario, task and knowledge files speak of each other,
 /// each with its file and the nearest name: an area of RobotAt that the knowledge does not define;
@@ -18,4 +18,4 @@ namespace hires::evaluation {
 std::vector<std::string> NamesThatDoNotFit(const Scenario& scenario, const std::string& path,
                                            const std::string& task);
 
-}  // namespace hires::evaluation
+}  // namespace hires::sim_robot

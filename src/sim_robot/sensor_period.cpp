@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-namespace hires::evaluation {
+namespace hires::sim_robot {
 
 double ReadPeriod(const std::string& key, long tick, base::ParamReader* in) {
   const double tick_seconds = 0.001 * static_cast<double>(tick);
@@ -16,4 +16,4 @@ double ReadPeriod(const std::string& key, long tick, base::ParamReader* in) {
   return period;
 }
 
-}  // namespace hires::evaluation
+}  // namespace hires::sim_robot

@@ -10,7 +10,7 @@
 #include "hires/robot/posture.h"
 #include "sim_robot/sensor_period.h"
 
-namespace hires::evaluation {
+namespace hires::sim_robot {
 namespace {
 
 using base::Between;
@@ -188,4 +188,4 @@ perception::Picture SimRobotCameras::InColours(const perception::HeatPicture& he
   return perception::Coloured(heat, params_.coldest, params_.hottest);
 }
 
-}  // namespace hires::evaluation
+}  // namespace hires::sim_robot

@@ -13,7 +13,7 @@
 #include "hires/perception/warm_objects.h"
 #include "sim_robot/sim_robot_world.h"
 
-namespace hires::evaluation {
+namespace hires::sim_robot {
 
 /// The pictures of the robot that stands in for a real one. Field of view and range of the depth
 /// camera are the robot's own (its profile).
@@ -88,4 +88,4 @@ class SimRobotCameras {
   std::unique_ptr<perception::PictureScene> paint_;  // made when first asked for
 };
 
-}  // namespace hires::evaluation
+}  // namespace hires::sim_robot

@@ -5,7 +5,7 @@
 #include "hires/base/text.h"
 #include "sim_robot/sim_robot_world.h"
 
-namespace hires::evaluation {
+namespace hires::sim_robot {
 namespace {
 
 using base::ToLower;
@@ -152,4 +152,4 @@ std::string SimRobotWorld::Drop(const std::string& object) {
   return "there is no free floor around the robot: " + refusal;
 }
 
-}  // namespace hires::evaluation
+}  // namespace hires::sim_robot

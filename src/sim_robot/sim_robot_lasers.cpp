@@ -9,7 +9,7 @@
 #include "hires/robot/posture.h"
 #include "sim_robot/sensor_period.h"
 
-namespace hires::evaluation {
+namespace hires::sim_robot {
 namespace {
 
 using base::Between;
@@ -141,4 +141,4 @@ std::optional<perception::PointCloud> SweepCloud::Add(const robot::TiltPhase& ph
   return std::nullopt;
 }
 
-}  // namespace hires::evaluation
+}  // namespace hires::sim_robot

@@ -10,7 +10,7 @@
 #include "hires/simulation/laser_scanner.h"
 #include "sim_robot/sim_robot_world.h"
 
-namespace hires::evaluation {
+namespace hires::sim_robot {
 
 /// The lasers of the robot that stands in for a real one, beside that of its base. They see the
 /// robot itself, as real ones do. Their links are the profile's.
@@ -79,4 +79,4 @@ class SweepCloud {
   perception::PointCloud gathered_;
 };
 
-}  // namespace hires::evaluation
+}  // namespace hires::sim_robot

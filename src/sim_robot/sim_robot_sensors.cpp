@@ -8,7 +8,7 @@
 #include "hires/simulation/scan_ghosts.h"
 #include "sim_robot/sensor_period.h"
 
-namespace hires::evaluation {
+namespace hires::sim_robot {
 namespace {
 
 using base::Between;
@@ -181,4 +181,4 @@ void SimRobotSensors::Misjudge(std::vector<perception::Detection>* seen, base::R
   *seen = std::move(told);
 }
 
-}  // namespace hires::evaluation
+}  // namespace hires::sim_robot

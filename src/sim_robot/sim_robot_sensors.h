@@ -16,7 +16,7 @@
 #include "sim_robot/sim_robot_lasers.h"
 #include "sim_robot/sim_robot_world.h"
 
-namespace hires::evaluation {
+namespace hires::sim_robot {
 
 /// Lets the world go on by kJointTick; the record looks for falls meanwhile.
 /// @param at_look  is called after each look (world::kFallLookInterval), if there is one.
@@ -92,4 +92,4 @@ class SimRobotSensors {
   std::optional<perception::TabletopRecogniser> eye_;
 };
 
-}  // namespace hires::evaluation
+}  // namespace hires::sim_robot

@@ -11,7 +11,7 @@
 #include "sim_robot/bump_schedule.h"
 #include "sim_robot/scenario.h"
 
-namespace hires::evaluation {
+namespace hires::sim_robot {
 namespace {
 
 using base::ConfigError;
@@ -250,4 +250,4 @@ SensorReadings SimRobotWorld::Sense() {
   return readings;
 }
 
-}  // namespace hires::evaluation
+}  // namespace hires::sim_robot

@@ -13,7 +13,7 @@
 #include "hires/world/standing.h"
 #include "sim_robot/truth.h"
 
-namespace hires::evaluation {
+namespace hires::sim_robot {
 
 class BumpSchedule;
 
@@ -142,4 +142,4 @@ class SimRobotWorld {
   std::optional<geometry::Twist2> held_back_;
 };
 
-}  // namespace hires::evaluation
+}  // namespace hires::sim_robot

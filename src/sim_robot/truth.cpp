@@ -7,7 +7,7 @@
 #include "hires/base/text.h"
 #include "sim_robot/controller_changes.h"
 
-namespace hires::evaluation {
+namespace hires::sim_robot {
 namespace {
 
 using geometry::Pose2;
@@ -136,4 +136,4 @@ simulation::Variation DrawVariation(const Truth& truth, const Uncertainty& uncer
   return imagination::SampleVariation(uncertainty, rng, imagination::Arrival::kDriven, scores);
 }
 
-}  // namespace hires::evaluation
+}  // namespace hires::sim_robot

@@ -12,7 +12,7 @@
 #include "hires/simulation/floor_places.h"
 #include "hires/simulation/self_localisation.h"
 
-namespace hires::evaluation {
+namespace hires::sim_robot {
 
 /// Two quantities that come together: the filling that makes a mill heavy makes it stand lower.
 struct Correlation {
@@ -132,4 +132,4 @@ imagination::ImaginationSetup SetupOf(const Truth& truth,
 simulation::Variation DrawVariation(const Truth& truth, const imagination::Uncertainty& uncertainty,
                                     const base::Rng& rng);
 
-}  // namespace hires::evaluation
+}  // namespace hires::sim_robot

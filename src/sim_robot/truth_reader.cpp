@@ -13,7 +13,7 @@
 #include "sim_robot/controller_changes.h"
 #include "sim_robot/truth.h"
 
-namespace hires::evaluation {
+namespace hires::sim_robot {
 namespace {
 
 namespace fs = std::filesystem;
@@ -214,4 +214,4 @@ Truth FindTruth(const std::string& name, const std::string& folder) {
   return truth;
 }
 
-}  // namespace hires::evaluation
+}  // namespace hires::sim_robot

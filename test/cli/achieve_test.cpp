@@ -37,8 +37,8 @@ execution::StepStatus Step(int index, const std::string& name, StepPhase phase) 
 }
 
 /// A drive that runs since 102 s, a grasp that waits for it.
-evaluation::AchieveStatus Running() {
-  evaluation::AchieveStatus status;
+loop::AchieveStatus Running() {
+  loop::AchieveStatus status;
   status.now = 105.0;
   status.steps = {Step(0, "move_base", StepPhase::kRunning),
                   Step(1, "pick_up", StepPhase::kWaiting)};
@@ -48,22 +48,22 @@ evaluation::AchieveStatus Running() {
 }
 
 TEST(ImaginedOutcomeTest, EachHasAWordAndComesBackFromIt) {
-  for (int i = 0; i <= static_cast<int>(evaluation::ImaginedOutcome::kCancelled); ++i) {
-    const auto outcome = static_cast<evaluation::ImaginedOutcome>(i);
-    EXPECT_EQ(evaluation::ParseImaginedOutcome(ToString(outcome)), outcome);
+  for (int i = 0; i <= static_cast<int>(loop::ImaginedOutcome::kCancelled); ++i) {
+    const auto outcome = static_cast<loop::ImaginedOutcome>(i);
+    EXPECT_EQ(loop::ParseImaginedOutcome(ToString(outcome)), outcome);
   }
-  EXPECT_EQ(evaluation::ParseImaginedOutcome(""), evaluation::ImaginedOutcome::kRunning);
-  EXPECT_THAT(ConfigErrorOf([] { evaluation::ParseImaginedOutcome("dreamt"); }),
+  EXPECT_EQ(loop::ParseImaginedOutcome(""), loop::ImaginedOutcome::kRunning);
+  EXPECT_THAT(ConfigErrorOf([] { loop::ParseImaginedOutcome("dreamt"); }),
               AllOf(HasSubstr("'dreamt'"), HasSubstr("no_worker")));
 }
 
 TEST(BeginOfTest, IsTheFirstMomentOfAnything) {
-  evaluation::AchieveStatus status = Running();
-  EXPECT_EQ(evaluation::BeginOf(status), 102.0);
+  loop::AchieveStatus status = Running();
+  EXPECT_EQ(loop::BeginOf(status), 102.0);
   status.imaginations.emplace_back();
   status.imaginations[0].requested = 101.5;
-  EXPECT_EQ(evaluation::BeginOf(status), 101.5);
-  EXPECT_EQ(evaluation::BeginOf(evaluation::AchieveStatus{}), 0.0);
+  EXPECT_EQ(loop::BeginOf(status), 101.5);
+  EXPECT_EQ(loop::BeginOf(loop::AchieveStatus{}), 0.0);
 }
 
 TEST(StepTableTest, TellsStateSinceAndExpectedEndInSecondsOfTheTask) {
@@ -75,7 +75,7 @@ TEST(StepTableTest, TellsStateSinceAndExpectedEndInSecondsOfTheTask) {
 }
 
 TEST(StepTableTest, WhatWasGivenUpBeforeItBeganIsLeftOut) {
-  evaluation::AchieveStatus status = Running();
+  loop::AchieveStatus status = Running();
   status.steps[1].phase = StepPhase::kSkipped;
   EXPECT_THAT(StepTable(status, 100.0), Not(HasSubstr("pick_up")));
   status.steps[1].started = 103.0;
@@ -83,7 +83,7 @@ TEST(StepTableTest, WhatWasGivenUpBeforeItBeganIsLeftOut) {
 }
 
 TEST(DryRunTableTest, ShowsTheLastPlanWithWhatIsExpectedOfIt) {
-  evaluation::AchieveStatus status;
+  loop::AchieveStatus status;
   status.steps = {Step(0, "given_up", StepPhase::kSkipped), Step(0, "imagine", StepPhase::kDone),
                   Step(1, "move_base", StepPhase::kWaiting),
                   Step(2, "pick_up", StepPhase::kWaiting)};
@@ -101,11 +101,11 @@ TEST(DryRunTableTest, ShowsTheLastPlanWithWhatIsExpectedOfIt) {
 }
 
 TEST(ChangeLinesTest, TellWhatIsNewAndNothingElse) {
-  evaluation::AchieveStatus before = Running();
+  loop::AchieveStatus before = Running();
   EXPECT_THAT(ChangeLines({}, before, 100.0),
               ElementsAre(HasSubstr("2.0 s  running   move_base(area1)")));
   EXPECT_THAT(ChangeLines(before, before, 100.0), IsEmpty());
-  evaluation::AchieveStatus after = before;
+  loop::AchieveStatus after = before;
   after.now = 115.0;
   after.steps[0].phase = StepPhase::kFailed;
   after.steps[0].finished = 114.0;
@@ -115,8 +115,8 @@ TEST(ChangeLinesTest, TellWhatIsNewAndNothingElse) {
 }
 
 TEST(ChangeLinesTest, WarningsAndImaginationsAreTold) {
-  evaluation::AchieveStatus before = Running();
-  evaluation::AchieveStatus after = before;
+  loop::AchieveStatus before = Running();
+  loop::AchieveStatus after = before;
   after.warnings = {"the planner went away"};
   after.imaginations.emplace_back();
   after.imaginations[0].action = {"move_base_param", {{"area1"}, {"slow", "fast"}}};
@@ -125,7 +125,7 @@ TEST(ChangeLinesTest, WarningsAndImaginationsAreTold) {
               ElementsAre(HasSubstr("warning   the planner went away"),
                           HasSubstr("3.0 s  imagines  move_base_param(area1, slow|fast)")));
   before = after;
-  after.imaginations[0].outcome = evaluation::ImaginedOutcome::kRanked;
+  after.imaginations[0].outcome = loop::ImaginedOutcome::kRanked;
   after.imaginations[0].answered = 108.0;
   after.imaginations[0].why = "slow is best";
   EXPECT_THAT(ChangeLines(before, after, 100.0),
@@ -152,7 +152,7 @@ TEST(AchieveDisplayTest, SaysOnceWhatChangesElsewhere) {
 }
 
 TEST(AchieveDisplayTest, SaysEachWarningOnce) {
-  evaluation::AchieveStatus status = Running();
+  loop::AchieveStatus status = Running();
   status.warnings = {"the planner went away"};
   for (const int width : {0, 80}) {
     AchieveDisplay display(width);
@@ -166,8 +166,8 @@ class AchieveVerbTest : public ::testing::Test {
  protected:
   Ended Run(const std::vector<std::string>& words) {
     Backends backends;
-    backends.achieve_remotely = [this](const evaluation::AchieveQuery& query,
-                                       const evaluation::OnAchieveStatus& on_status,
+    backends.achieve_remotely = [this](const loop::AchieveQuery& query,
+                                       const loop::OnAchieveStatus& on_status,
                                        const std::function<bool()>&) {
       query_ = query;
       on_status(Running());
@@ -177,14 +177,14 @@ class AchieveVerbTest : public ::testing::Test {
     return RunHires({"achieve"}, words, backends);
   }
 
-  Ended RunFor(evaluation::AchieveOutcome outcome) {
+  Ended RunFor(loop::AchieveOutcome outcome) {
     report_.outcome = outcome;
     return Run({"serve guest1"});
   }
 
   const test_support::TemporaryFolder folder_;
-  evaluation::AchieveQuery query_;
-  evaluation::AchieveReport report_;
+  loop::AchieveQuery query_;
+  loop::AchieveReport report_;
 };
 
 TEST_F(AchieveVerbTest, ATaskIsPlayedInThisProgramWithoutAnyNode) {
@@ -307,7 +307,7 @@ TEST_F(AchieveVerbTest, ARobotWithoutCameraInAWorldOfItsOwnDoesATaskOfItsOwn) {
 }
 
 TEST_F(AchieveVerbTest, TheTaskMayBeOneWordOrSeveral) {
-  report_.outcome = evaluation::AchieveOutcome::kSucceeded;
+  report_.outcome = loop::AchieveOutcome::kSucceeded;
   Run({"serve", "guest1", "--imagination", "thesis"});
   EXPECT_EQ(query_.task, "serve guest1");
   EXPECT_EQ(query_.imagination, "thesis");
@@ -316,17 +316,17 @@ TEST_F(AchieveVerbTest, TheTaskMayBeOneWordOrSeveral) {
 }
 
 TEST_F(AchieveVerbTest, ExitCodesTellTheOutcome) {
-  EXPECT_EQ(RunFor(evaluation::AchieveOutcome::kSucceeded).code, kExitAchieved);
-  EXPECT_EQ(RunFor(evaluation::AchieveOutcome::kFailed).code, kExitNotAchieved);
-  EXPECT_EQ(RunFor(evaluation::AchieveOutcome::kInvalid).code, kExitNotAchieved);
-  EXPECT_EQ(RunFor(evaluation::AchieveOutcome::kBusy).code, kExitNotAchieved);
-  EXPECT_EQ(RunFor(evaluation::AchieveOutcome::kNoPlan).code, kExitNoWay);
-  EXPECT_EQ(RunFor(evaluation::AchieveOutcome::kPreempted).code, kExitPreempted);
-  EXPECT_EQ(RunFor(evaluation::AchieveOutcome::kDryRun).code, kExitAchieved);
+  EXPECT_EQ(RunFor(loop::AchieveOutcome::kSucceeded).code, kExitAchieved);
+  EXPECT_EQ(RunFor(loop::AchieveOutcome::kFailed).code, kExitNotAchieved);
+  EXPECT_EQ(RunFor(loop::AchieveOutcome::kInvalid).code, kExitNotAchieved);
+  EXPECT_EQ(RunFor(loop::AchieveOutcome::kBusy).code, kExitNotAchieved);
+  EXPECT_EQ(RunFor(loop::AchieveOutcome::kNoPlan).code, kExitNoWay);
+  EXPECT_EQ(RunFor(loop::AchieveOutcome::kPreempted).code, kExitPreempted);
+  EXPECT_EQ(RunFor(loop::AchieveOutcome::kDryRun).code, kExitAchieved);
 }
 
 TEST_F(AchieveVerbTest, ADryRunPrintsThePlan) {
-  report_.outcome = evaluation::AchieveOutcome::kDryRun;
+  report_.outcome = loop::AchieveOutcome::kDryRun;
   report_.reason = "planned and imagined; nothing was begun";
   report_.status.steps = {Step(0, "pick_up", StepPhase::kWaiting)};
   const Ended ended = Run({"serve guest1"});
@@ -335,7 +335,7 @@ TEST_F(AchieveVerbTest, ADryRunPrintsThePlan) {
 }
 
 TEST_F(AchieveVerbTest, SaysOutcomeReasonAndNumbers) {
-  report_.outcome = evaluation::AchieveOutcome::kFailed;
+  report_.outcome = loop::AchieveOutcome::kFailed;
   report_.reason = "unreachable";
   report_.status = Running();
   report_.status.replans = 2;
@@ -347,7 +347,7 @@ TEST_F(AchieveVerbTest, SaysOutcomeReasonAndNumbers) {
 }
 
 TEST_F(AchieveVerbTest, WritesTimelineAndJson) {
-  report_.outcome = evaluation::AchieveOutcome::kSucceeded;
+  report_.outcome = loop::AchieveOutcome::kSucceeded;
   report_.status = Running();
   const std::string csv = (folder_.path() / "run.csv").string();
   const std::string json = (folder_.path() / "run.json").string();

@@ -15,7 +15,7 @@ imagination::StartState WithACup() {
 }
 
 TEST(ActionLoopTest, TheSameSeedGivesTheSameBits) {
-  const evaluation::Truth truth = TheSetup().ReadTruth("");
+  const sim_robot::Truth truth = TheSetup().ReadTruth("");
   const auto play = [&](std::uint64_t seed) {
     ActionOrder order;
     order.start = WithACup();

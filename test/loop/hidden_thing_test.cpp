@@ -30,8 +30,8 @@ TEST(HiddenThingTest, ThePoseThatIsImaginedToSeeBestIsLookedFrom) {
   EXPECT_EQ(ToString(look->failure), "");
   const auto& all = run.report.status.imaginations;
   const auto answer = std::find_if(all.rbegin(), all.rend(), [&](const auto& one) {
-    return one.outcome == evaluation::ImaginedOutcome::kRanked &&
-           one.action.name == "observe_objects_at" && *one.answered <= *look->started;
+    return one.outcome == ImaginedOutcome::kRanked && one.action.name == "observe_objects_at" &&
+           *one.answered <= *look->started;
   });
   ASSERT_NE(answer, all.rend());
   EXPECT_EQ(answer->predictions.size(), 12u);

@@ -8,7 +8,6 @@
 namespace hires::loop::hot_coffee_test {
 namespace {
 
-using evaluation::AchieveOutcome;
 using test_support::kConfig;
 using test_support::StandsOnTable1;
 using test_support::TheSetup;

@@ -11,8 +11,6 @@
 namespace hires::loop::loop_messages_test {
 namespace {
 
-using evaluation::AchieveOutcome;
-
 const std::string kConfig = HIRES_SOURCE_DIR "/config/";
 
 /// A file of this name that is gone with the program.
@@ -59,7 +57,7 @@ hidden: []
 }
 
 std::string Bits(const LoopRun& run) {
-  nlohmann::ordered_json json = evaluation::ToJson(run.report);
+  nlohmann::ordered_json json = reports::ToJson(run.report);
   json["seconds"] = run.virtual_seconds;
   return json.dump();
 }

@@ -12,8 +12,6 @@
 namespace hires::loop::surprises_on_the_way_test {
 namespace {
 
-using evaluation::AchieveOutcome;
-using evaluation::ImaginedOutcome;
 using test_support::kConfig;
 using test_support::TheSetup;
 using testing::EndsWith;
@@ -55,7 +53,7 @@ Drive DriveOf(const LoopRun& run) {
   });
   if (found == steps.end()) throw std::runtime_error("no drive: " + run.report.reason);
   Drive drive{*found, {}};
-  for (const evaluation::ImaginedStep& answer : run.report.status.imaginations) {
+  for (const ImaginedStep& answer : run.report.status.imaginations) {
     for (const imagination::Prediction& one : answer.predictions)
       if (one.action == found->action) drive.imagined.push_back(one.evidence.duration.mean);
   }
@@ -99,7 +97,7 @@ TEST(SurprisesOnTheWayTest, ALowBoxOnTheFloorIsInTheWorldsThatAreImagined) {
   const Eigen::Vector3d p_M = run.truth.objects.at("crate1").X_MO.translation;
   EXPECT_LT((p_M - Eigen::Vector3d(6.3, 11.43, 0.0)).norm(), 0.01) << p_M.transpose();
   std::vector<std::pair<ImaginedOutcome, std::string>> answers;  // and where to
-  for (const evaluation::ImaginedStep& one : run.report.status.imaginations)
+  for (const ImaginedStep& one : run.report.status.imaginations)
     answers.emplace_back(one.outcome, one.action.alternatives.at(0).at(0));
   using testing::Pair;
   ASSERT_GE(answers.size(), 3u);

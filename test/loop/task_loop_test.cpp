@@ -13,8 +13,6 @@
 namespace hires::loop::task_loop_test {
 namespace {
 
-using evaluation::AchieveOutcome;
-using evaluation::ImaginedOutcome;
 using test_support::kConfig;
 using test_support::StandsOnTable1;
 using test_support::TheSetup;
@@ -34,7 +32,7 @@ LoopOrder Topple(const std::string& imagination, std::uint64_t seed = 1) {
 
 /// Everything that was told and everything that is true, to the last bit.
 std::string Bits(const LoopRun& run) {
-  nlohmann::ordered_json json = evaluation::ToJson(run.report);
+  nlohmann::ordered_json json = reports::ToJson(run.report);
   for (const auto& [name, fate] : run.truth.objects) {
     const auto& p = fate.X_MO.translation;
     json["truth"][name] = {p.x(), p.y(), p.z(), fate.max_tilt, fate.falls};
@@ -88,7 +86,7 @@ TEST(TaskLoopTest, WhatWasPlayedForACancelledImaginationCounts) {
   const LoopRun run = PlayTask(TheSetup(), order, {}, [&] { return ++num_asked > 15; });  // 3 s
   ASSERT_EQ(run.report.outcome, AchieveOutcome::kPreempted);
   ASSERT_EQ(run.report.status.imaginations.size(), 1u);
-  const evaluation::ImaginedStep& imagined = run.report.status.imaginations[0];
+  const ImaginedStep& imagined = run.report.status.imaginations[0];
   ASSERT_EQ(imagined.outcome, ImaginedOutcome::kCancelled);
   ASSERT_EQ(imagined.predictions.size(), 2u);
   EXPECT_EQ(imagined.recommended, -1) << "nobody wants to know";

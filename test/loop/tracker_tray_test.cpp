@@ -9,8 +9,8 @@
 namespace hires::loop::tracker_tray_test {
 namespace {
 
-using evaluation::SimRobotWorld;
 using geometry::Pose3;
+using sim_robot::SimRobotWorld;
 
 const std::string kMill = "peppermill1";
 
@@ -21,7 +21,7 @@ const LoopSetup::Parts& Parts() {
 
 imagination::StartState MillOnTray() {
   imagination::StartState start =
-      evaluation::StartOf(Parts().world, HIRES_SOURCE_DIR "/config/scenarios/topple.yaml", "");
+      sim_robot::StartOf(Parts().world, HIRES_SOURCE_DIR "/config/scenarios/topple.yaml", "");
   start.world.objects.at(0).X_MO = geometry::Lift(start.robot.X_MB) * Parts().world.scene->X_BO;
   return start;
 }
@@ -49,7 +49,7 @@ class TrackerTrayTest : public testing::Test {
     while (clock_.now() < end - 1e-6) {
       clock_.At(1.0 + 0.001 * static_cast<double>(world_.milliseconds()), [this] { Sense(); });
       while (clock_.Step()) continue;
-      world_.Advance(evaluation::kSensorTick);
+      world_.Advance(sim_robot::kSensorTick);
     }
   }
 
@@ -78,8 +78,8 @@ class TrackerTrayTest : public testing::Test {
   VirtualClock clock_{1.0};
   Blackboard blackboard_{Parts().ontology};
   SimRobotWorld world_{Parts().world, MillOnTray(), 1, Parts().ReadTruth("same")};
-  evaluation::SimRobotSensors sensors_{Parts().SensorsUnder(Parts().ReadTruth("same")), 1,
-                                       world_.scene()};
+  sim_robot::SimRobotSensors sensors_{Parts().SensorsUnder(Parts().ReadTruth("same")), 1,
+                                      world_.scene()};
   Tracker tracker_{Parts().world,
                    Parts().context,
                    FramesOf(world_.scene()->robot),

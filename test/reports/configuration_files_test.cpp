@@ -58,20 +58,20 @@ const std::map<std::string, Reader>& Readers() {
       {"imagination_client.yaml",
        [](const std::string& path) { imagination::ReadClientConfig(path); }},
       {"scene.yaml", [](const std::string& path) { imagination::ReadSetupConfig(path); }},
-      {"decision.yaml", [](const std::string& path) { evaluation::ReadDecisionConfig(path); }},
-      {"reproduce.yaml", [](const std::string& path) { evaluation::ReadCatalogue(path); }},
-      {"reproduce_docs.yaml", [](const std::string& path) { evaluation::ReadCatalogue(path); }},
-      {"series", [](const std::string& path) { evaluation::ReadScenarioSeries(path); }},
+      {"decision.yaml", [](const std::string& path) { lab::ReadDecisionConfig(path); }},
+      {"reproduce.yaml", [](const std::string& path) { lab::ReadCatalogue(path); }},
+      {"reproduce_docs.yaml", [](const std::string& path) { lab::ReadCatalogue(path); }},
+      {"series", [](const std::string& path) { lab::ReadScenarioSeries(path); }},
       {"experiments",
        [](const std::string& path) {
-         evaluation::ExperimentOverrides overrides;
+         lab::ExperimentOverrides overrides;
          overrides.map = "given.yaml";  // some want one; it is opened when it is played
-         evaluation::ReadExperiment(path, overrides);
+         lab::ReadExperiment(path, overrides);
        }},
       {"hypothesis.yaml",
        [](const std::string& path) {
          for (const char* scenario : {"topple", "serve_coffee"})
-           evaluation::ReadHypothesisGoal(path, scenario);
+           lab::ReadHypothesisGoal(path, scenario);
        }},
       {"prices.yaml",
        [](const std::string& path) { imagination::ReadPrices(base::ParamReader::FromFile(path)); }},
@@ -79,7 +79,7 @@ const std::map<std::string, Reader>& Readers() {
        [](const std::string& path) {
          imagination::ReadValidated(base::ParamReader::FromFile(path));
        }},
-      {"truths", [](const std::string& path) { evaluation::ReadTruth(path); }},
+      {"truths", [](const std::string& path) { sim_robot::ReadTruth(path); }},
       {"uncertainty.yaml", [](const std::string& path) { imagination::LoadUncertainty(path); }},
       {"detector.yaml", [](const std::string& path) { perception::ReadDetectorErrors(path); }},
       {"planner.yaml",
@@ -95,17 +95,15 @@ const std::map<std::string, Reader>& Readers() {
          knowledge::Ontology::FromFiles(config.ontology);
        }},
       {"base_guard.yaml", [](const std::string& path) { navigation::ReadBaseGuardParams(path); }},
-      {"scenarios", [](const std::string& path) { evaluation::ReadScenario(path); }},
-      {"episode.yaml", [](const std::string& path) { evaluation::ReadEpisodeConfig(path); }},
+      {"scenarios", [](const std::string& path) { sim_robot::ReadScenario(path); }},
+      {"episode.yaml", [](const std::string& path) { ReadEpisodeConfig(path); }},
       {"recogniser.yaml", [](const std::string& path) { perception::ReadRecogniserConfig(path); }},
       {"heat_reader.yaml",
        [](const std::string& path) {
          perception::ReadWarmParams(base::ParamReader::FromFile(path));
        }},
       {"topple_monitor.yaml",
-       [](const std::string& path) {
-         evaluation::ReadToppleMonitorConfig(base::ParamReader::FromFile(path));
-       }},
+       [](const std::string& path) { ReadToppleMonitorConfig(base::ParamReader::FromFile(path)); }},
       {"localisation.yaml",
        [](const std::string& path) {
          localisation::ReadLocalisationConfig(base::ParamReader::FromFile(path));

@@ -10,7 +10,7 @@
 #include "hires/base/run_processes.h"
 #include "hires/base/text.h"
 
-namespace hires::evaluation::configuration_hash_test {
+namespace hires::reports::configuration_hash_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -86,4 +86,4 @@ TEST_F(ConfigurationHashTest, BrokenYamlIsNamed) {
 }
 
 }  // namespace
-}  // namespace hires::evaluation::configuration_hash_test
+}  // namespace hires::reports::configuration_hash_test

@@ -4,7 +4,7 @@
 
 #include <nlohmann/json.hpp>
 
-namespace hires::evaluation::episode_compare_test {
+namespace hires::reports::episode_compare_test {
 namespace {
 
 using testing::AllOf;
@@ -138,4 +138,4 @@ TEST(ImagineStepTest, AStepIsImaginedAlikeByAnyNumberOfThreads) {
 }
 
 }  // namespace
-}  // namespace hires::evaluation::episode_compare_test
+}  // namespace hires::reports::episode_compare_test

@@ -8,7 +8,7 @@
 #include "reports/episode/episode_steps.h"
 #include "support/fake_frame_tree.h"
 
-namespace hires::evaluation::episode_test {
+namespace hires::reports::episode_test {
 namespace {
 
 using geometry::Pose2;
@@ -307,4 +307,4 @@ TEST(EpisodeTest, AResultWithoutItsGoalSaysNothing) {
 }
 
 }  // namespace
-}  // namespace hires::evaluation::episode_test
+}  // namespace hires::reports::episode_test

@@ -8,7 +8,7 @@
 #include "support/messages.h"
 #include "support/temporary_folder.h"
 
-namespace hires::evaluation::episode_topics_test {
+namespace hires::reports::episode_topics_test {
 namespace {
 
 using test_support::ConfigErrorOf;
@@ -118,4 +118,4 @@ TEST(BagRotationTest, ABagIsFullBySizeByTimeAndWhenTheClockBeginsAgain) {
 }
 
 }  // namespace
-}  // namespace hires::evaluation::episode_topics_test
+}  // namespace hires::reports::episode_topics_test

@@ -9,7 +9,7 @@
 #include "support/messages.h"
 #include "support/temporary_folder.h"
 
-namespace hires::evaluation::experience_recording_test {
+namespace hires::reports::experience_recording_test {
 namespace {
 
 using geometry::Pose2;
@@ -230,4 +230,4 @@ TEST_F(ExperienceWriterTest, WhatCannotBeWrittenIsKeptAndTriedAgain) {
 }
 
 }  // namespace
-}  // namespace hires::evaluation::experience_recording_test
+}  // namespace hires::reports::experience_recording_test

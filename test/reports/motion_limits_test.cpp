@@ -9,7 +9,7 @@
 #include "hires/base/error.h"
 #include "hires/physics/closed_forms.h"
 
-namespace hires::evaluation::motion_limits_test {
+namespace hires::reports::motion_limits_test {
 namespace {
 
 using testing::AllOf;
@@ -204,4 +204,4 @@ TEST(MotionLimitsTest, SaysWhatCannotBeCarried) {
 }
 
 }  // namespace
-}  // namespace hires::evaluation::motion_limits_test
+}  // namespace hires::reports::motion_limits_test

@@ -13,7 +13,7 @@
 #include "support/messages.h"
 #include "support/temporary_folder.h"
 
-namespace hires::evaluation::report_json_test {
+namespace hires::reports::report_json_test {
 namespace {
 
 using hires::test_support::ConfigErrorOf;
@@ -135,4 +135,4 @@ TEST(ReportJsonTest, TheNumberOfThreadsShowsNowhereButInTheWallsTime) {
 }
 
 }  // namespace
-}  // namespace hires::evaluation::report_json_test
+}  // namespace hires::reports::report_json_test

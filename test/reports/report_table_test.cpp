@@ -6,7 +6,7 @@
 #include "hires/base/text.h"
 #include "reports/report_examples.h"
 
-namespace hires::evaluation::report_table_test {
+namespace hires::reports::report_table_test {
 namespace {
 
 using ::testing::HasSubstr;
@@ -87,4 +87,4 @@ TEST(ProgressLineTest, KeepsToItsWidth) {
 }
 
 }  // namespace
-}  // namespace hires::evaluation::report_table_test
+}  // namespace hires::reports::report_table_test

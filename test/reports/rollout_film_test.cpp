@@ -16,7 +16,7 @@
 #include "support/messages.h"
 #include "support/temporary_folder.h"
 
-namespace hires::evaluation::rollout_film_test {
+namespace hires::reports::rollout_film_test {
 namespace {
 
 using hires::test_support::ConfigErrorOf;
@@ -304,4 +304,4 @@ TEST(RolloutFilmTest, AFileThatCannotBeWrittenIsNamed) {
 }
 
 }  // namespace
-}  // namespace hires::evaluation::rollout_film_test
+}  // namespace hires::reports::rollout_film_test

@@ -8,7 +8,7 @@
 #include <limits>
 #include <stdexcept>
 
-namespace hires::evaluation::statistics_test {
+namespace hires::reports::statistics_test {
 namespace {
 
 TEST(BootstrapIntervalTest, ItHoldsTheMeanAndStaysWithinTheValues) {
@@ -411,4 +411,4 @@ TEST(SignFlipPValueTest, DrawnSignsOfEqualSizesGiveTheSignTest) {
 }
 
 }  // namespace
-}  // namespace hires::evaluation::statistics_test
+}  // namespace hires::reports::statistics_test

@@ -8,7 +8,7 @@
 #include "hires/base/text.h"
 #include "support/temporary_folder.h"
 
-namespace hires::evaluation::timeline_test {
+namespace hires::reports::timeline_test {
 namespace {
 
 using execution::StepPhase;
@@ -29,15 +29,15 @@ execution::StepStatus Step(int index, const base::ActionCall& action, double sta
 }
 
 /// Two steps side by side, the second one imagined while the first one ran.
-AchieveReport Report() {
-  AchieveReport report;
+loop::AchieveReport Report() {
+  loop::AchieveReport report;
   report.task = "carry \"it\", please";
-  report.outcome = AchieveOutcome::kSucceeded;
+  report.outcome = loop::AchieveOutcome::kSucceeded;
   report.status.now = 1040.0;
   report.status.steps = {Step(1, {"move_base_param", {"area1", "slow"}}, 1020.0, 1040.0),
                          Step(0, {"pick_up", {"mug1"}}, 1002.0, 1012.0)};
   report.status.steps.emplace_back();  // never begun
-  ImaginedStep imagined;
+  loop::ImaginedStep imagined;
   imagined.step = 1;
   imagined.action = {"move_base_param", {{"area1"}, {"slow", "fast"}}};
   imagined.requested = 1000.0;
@@ -46,7 +46,7 @@ AchieveReport Report() {
   imagined.deadline = 1019.5;
   imagined.wall_seconds = 4.0;
   imagined.simulated_seconds = 800.0;
-  imagined.outcome = ImaginedOutcome::kRanked;
+  imagined.outcome = loop::ImaginedOutcome::kRanked;
   imagined.predictions.resize(2);
   imagined.predictions[0].evidence.num_rollouts = 32;
   imagined.predictions[1].evidence.num_rollouts = 32;
@@ -68,7 +68,7 @@ TEST(TimelineTest, CountsFromTheFirstBeginImaginationsAboveThenStepsByTheirBegin
 }
 
 TEST(TimelineTest, WhatStillRunsEndsNow) {
-  AchieveReport report = Report();
+  loop::AchieveReport report = Report();
   report.status.steps[0].finished.reset();
   report.status.imaginations[0].answered.reset();
   report.status.now = 1050.0;
@@ -78,7 +78,7 @@ TEST(TimelineTest, WhatStillRunsEndsNow) {
 }
 
 TEST(TimelineTest, AStepThatOnlyHasAnotherOneImaginedIsLeftOut) {
-  AchieveReport report = Report();
+  loop::AchieveReport report = Report();
   report.status.steps.push_back(Step(2, {"imagine", {"!move_base_param"}}, 1000.0, 1008.0));
   EXPECT_THAT(MakeTimeline(report).bars, SizeIs(3));
 }
@@ -102,7 +102,7 @@ TEST(TimelineTextTest, BarsStandWhereTheirTimeIs) {
 }
 
 TEST(TimelineTextTest, AMomentIsOneCharacter) {
-  AchieveReport report = Report();
+  loop::AchieveReport report = Report();
   report.status.steps[0].started = report.status.steps[0].finished;
   const std::vector<std::string> lines = base::Split(TimelineText(MakeTimeline(report), 40), '\n');
   EXPECT_THAT(lines[2], HasSubstr("|                                       #|"));
@@ -142,4 +142,4 @@ TEST(TimelineJsonTest, HoldsStepsAndImaginations) {
 }
 
 }  // namespace
-}  // namespace hires::evaluation::timeline_test
+}  // namespace hires::reports::timeline_test

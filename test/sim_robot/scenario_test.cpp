@@ -19,7 +19,7 @@
 #include "sim_robot/scenario_names.h"
 #include "support/temporary_folder.h"
 
-namespace hires::evaluation::scenario_test {
+namespace hires::sim_robot::scenario_test {
 namespace {
 
 using ::testing::AllOf;
@@ -252,4 +252,4 @@ INSTANTIATE_TEST_SUITE_P(All, ShippedScenarioTest,
                                            "coffee_spots.yaml"));
 
 }  // namespace
-}  // namespace hires::evaluation::scenario_test
+}  // namespace hires::sim_robot::scenario_test

@@ -16,7 +16,7 @@
 #include "support/scenes.h"
 #include "support/temporary_folder.h"
 
-namespace hires::evaluation::self_localisation_test {
+namespace hires::sim_robot::self_localisation_test {
 namespace {
 
 using geometry::Pose2;
@@ -361,4 +361,4 @@ TEST_F(SelfLocalisationFileTest, ATruthThatFiltersNamesTheFile) {
 }
 
 }  // namespace
-}  // namespace hires::evaluation::self_localisation_test
+}  // namespace hires::sim_robot::self_localisation_test

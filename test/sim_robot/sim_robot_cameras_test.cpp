@@ -11,7 +11,7 @@
 #include "sim_robot/sim_robot_sensors.h"
 #include "support/messages.h"
 
-namespace hires::evaluation::sim_robot_cameras_test {
+namespace hires::sim_robot::sim_robot_cameras_test {
 namespace {
 
 using hires::test_support::PlateSetup;
@@ -229,4 +229,4 @@ TEST(SensorsOfTest, PicturesAreSeenAndIdealSensorsDoNotErr) {
 }
 
 }  // namespace
-}  // namespace hires::evaluation::sim_robot_cameras_test
+}  // namespace hires::sim_robot::sim_robot_cameras_test

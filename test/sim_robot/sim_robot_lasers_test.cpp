@@ -8,7 +8,7 @@
 #include "sim_robot/sensor_scenes.h"
 #include "sim_robot/sim_robot_sensors.h"
 
-namespace hires::evaluation::sim_robot_lasers_test {
+namespace hires::sim_robot::sim_robot_lasers_test {
 namespace {
 
 using geometry::Pose3;
@@ -150,4 +150,4 @@ TEST(SweepCloudTest, EachSweepBeginsAnew) {
 }
 
 }  // namespace
-}  // namespace hires::evaluation::sim_robot_lasers_test
+}  // namespace hires::sim_robot::sim_robot_lasers_test

@@ -10,7 +10,7 @@
 #include "support/messages.h"
 #include "support/scenes.h"
 
-namespace hires::evaluation::sim_robot_world_test {
+namespace hires::sim_robot::sim_robot_world_test {
 namespace {
 
 using geometry::Pose2;
@@ -281,4 +281,4 @@ TEST_F(SimRobotWorldTest, FurnitureThatWasMovedIsThereToBeTouched) {
 }
 
 }  // namespace
-}  // namespace hires::evaluation::sim_robot_world_test
+}  // namespace hires::sim_robot::sim_robot_world_test

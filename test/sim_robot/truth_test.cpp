@@ -12,7 +12,7 @@
 #include "support/messages.h"
 #include "support/temporary_folder.h"
 
-namespace hires::evaluation::truth_test {
+namespace hires::sim_robot::truth_test {
 namespace {
 
 using hires::test_support::ConfigErrorOf;
@@ -184,4 +184,4 @@ TEST(TruthTest, CorrelatedQuantitiesComeTogetherAndOthersAreAsDrawnAlone) {
 }
 
 }  // namespace
-}  // namespace hires::evaluation::truth_test
+}  // namespace hires::sim_robot::truth_test

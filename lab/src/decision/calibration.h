@@ -6,7 +6,7 @@
 #include "reports/statistics.h"
 
 // How well probabilities that were said beforehand fit what came.
-namespace hires::evaluation {
+namespace hires::lab {
 
 /// What was said of an event, and whether it came.
 struct Forecast {
@@ -81,7 +81,7 @@ TestResult UniformTest(std::vector<double> values);
 
 /// Pearson's correlation with an interval by Fisher's transformation (n > 3, else -1 .. 1); 0 where
 /// one of both does not vary.  @pre sizes agree.
-Interval PearsonCorrelation(const std::vector<double>& first, const std::vector<double>& second);
+reports::Interval PearsonCorrelation(const std::vector<double>& first, const std::vector<double>& second);
 
 /// Mean maximum rank violation [Li et al. 2024, arXiv:2405.05941, SIMPLER]: the mean over i of the
 /// largest |real_i - real_j| over those j that both order differently, that is where
@@ -89,4 +89,4 @@ Interval PearsonCorrelation(const std::vector<double>& first, const std::vector<
 double MeanMaximumRankViolation(const std::vector<double>& foretold,
                                 const std::vector<double>& real);
 
-}  // namespace hires::evaluation
+}  // namespace hires::lab

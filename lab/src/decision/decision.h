@@ -15,7 +15,7 @@
 
 // What a decision is worth: random tasks, the same ones for everybody who decides, judged by a
 // truth that is played.
-namespace hires::evaluation {
+namespace hires::lab {
 
 /// lab/config/decision.yaml: what tasks are drawn from.
 struct DecisionConfig {
@@ -136,4 +136,4 @@ const std::vector<std::string>& DecisionAlternatives();
 /// the ranking that finds no way is the dissertation's, which bans nothing.
 std::string ChoiceOf(const Advice& advice, const std::string& arm, const std::string& by_default);
 
-}  // namespace hires::evaluation
+}  // namespace hires::lab

@@ -8,14 +8,14 @@
 #include "sim_robot/truth.h"
 #include "loop/task_loop.h"
 
-namespace hires::cli {
+namespace hires::lab {
 
 /// Plays one drive of `hires experiment decision`, as it is judged there.
 /// @return nothing when cancelled.
-std::optional<evaluation::TruthPlay> PlayDrive(const loop::LoopSetup& setup,
-                                               const evaluation::Truth& truth,
-                                               const evaluation::DecisionTask& task,
+std::optional<TruthPlay> PlayDrive(const loop::LoopSetup& setup,
+                                               const sim_robot::Truth& truth,
+                                               const DecisionTask& task,
                                                const std::string& motion_set, std::uint64_t seed,
                                                const std::function<bool()>& cancelled = {});
 
-}  // namespace hires::cli
+}  // namespace hires::lab

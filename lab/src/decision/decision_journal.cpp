@@ -9,7 +9,7 @@
 #include "hires/base/error.h"
 #include "hires/base/hash.h"
 
-namespace hires::evaluation {
+namespace hires::lab {
 namespace {
 
 using nlohmann::ordered_json;
@@ -111,4 +111,4 @@ void DecisionJournal::Keep(const ordered_json& line, const std::string& where) {
   }
 }
 
-}  // namespace hires::evaluation
+}  // namespace hires::lab

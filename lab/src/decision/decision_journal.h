@@ -12,7 +12,7 @@
 #include "lab/src/decision/decision_play.h"
 #include "lab/src/run_journal.h"
 
-namespace hires::evaluation {
+namespace hires::lab {
 
 /// One piece of a series that is played by itself.
 struct DecisionPiece {
@@ -60,4 +60,4 @@ class DecisionJournal {
   RunJournal journal_;  // guarded; last: what is there is told to the others
 };
 
-}  // namespace hires::evaluation
+}  // namespace hires::lab

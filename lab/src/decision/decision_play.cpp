@@ -8,7 +8,7 @@
 #include "hires/base/rng.h"
 #include "hires/imagination/local_imagination.h"
 
-namespace hires::evaluation {
+namespace hires::lab {
 namespace {
 
 using imagination::Report;
@@ -189,4 +189,4 @@ std::optional<std::vector<TruthPlay>> PlayForOracle(const DecisionTask& task,
   return plays;
 }
 
-}  // namespace hires::evaluation
+}  // namespace hires::lab

@@ -13,7 +13,7 @@
 
 // What a task of `hires experiment decision` is made of: imagined once for all truths, played once
 // with each motion set, and many times per load, route and height for the oracle.
-namespace hires::evaluation {
+namespace hires::lab {
 
 /// Plays one drive in the truth.  @return nothing when cancelled.
 using PlayTruth = std::function<std::optional<TruthPlay>(
@@ -47,4 +47,4 @@ std::optional<std::vector<TruthPlay>> PlayForOracle(const DecisionTask& task,
                                                     const std::string& motion_set,
                                                     const DecisionParts& parts);
 
-}  // namespace hires::evaluation
+}  // namespace hires::lab

@@ -7,7 +7,7 @@
 #include "hires/base/error.h"
 #include "hires/base/text.h"
 
-namespace hires::evaluation {
+namespace hires::lab {
 namespace {
 
 using imagination::ImaginationOutcome;
@@ -156,4 +156,4 @@ std::vector<TruthPlay> ParsePlays(const ordered_json& json) {
   return plays;
 }
 
-}  // namespace hires::evaluation
+}  // namespace hires::lab

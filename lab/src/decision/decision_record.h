@@ -8,7 +8,7 @@
 #include "lab/src/decision/decision.h"
 
 // Pieces of a series as JSON; see DecisionJournal.
-namespace hires::evaluation {
+namespace hires::lab {
 
 nlohmann::ordered_json ToJson(const ImaginedTask& imagined);
 nlohmann::ordered_json ToJson(const std::map<std::string, TruthPlay>& plays);
@@ -19,4 +19,4 @@ ImaginedTask ParseImagined(const nlohmann::ordered_json& json);
 std::map<std::string, TruthPlay> ParseAlternatives(const nlohmann::ordered_json& json);
 std::vector<TruthPlay> ParsePlays(const nlohmann::ordered_json& json);
 
-}  // namespace hires::evaluation
+}  // namespace hires::lab

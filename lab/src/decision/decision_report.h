@@ -10,7 +10,7 @@
 #include "lab/src/decision/decision.h"
 #include "reports/statistics.h"
 
-namespace hires::evaluation {
+namespace hires::lab {
 
 /// What all tasks had in common.
 struct DecisionSetting {
@@ -33,13 +33,13 @@ struct ArmTask {
 /// One arm over all tasks, at one scale of prices.
 struct DecisionArm {
   std::vector<ArmTask> tasks;
-  Interval cost;     ///< [s] mean with Student's t interval
-  Interval success;  ///< share with the exact interval
+  reports::Interval cost;     ///< [s] mean with Student's t interval
+  reports::Interval success;  ///< share with the exact interval
   int falls{0};
   // None without an oracle.
-  std::optional<Interval> expected;         ///< [s] mean expected cost
-  std::optional<Interval> regret;           ///< [s] cost less the oracle's
-  std::optional<Interval> expected_regret;  ///< [s] by expected costs
+  std::optional<reports::Interval> expected;         ///< [s] mean expected cost
+  std::optional<reports::Interval> regret;           ///< [s] cost less the oracle's
+  std::optional<reports::Interval> expected_regret;  ///< [s] by expected costs
   double simulated_seconds{0.0};            ///< [s] of all plays behind its decisions
   double wall_seconds{0.0};                 ///< [s] likewise
   double processor_seconds{0.0};            ///< [s] likewise
@@ -49,12 +49,12 @@ struct DecisionArm {
 /// Imagination against another arm: differences are imagination - other.
 struct ArmComparison {
   std::string arm;
-  Interval cost;                     ///< [s] Student's t
+  reports::Interval cost;                     ///< [s] Student's t
   double t_free_p_value{1.0};        ///< of SignFlipPValue
   double sign_p_value{1.0};          ///< exact: cheaper as often as dearer
-  std::optional<Interval> expected;  ///< [s] Student's t of expected costs; none without oracle
+  std::optional<reports::Interval> expected;  ///< [s] Student's t of expected costs; none without oracle
   double expected_p_value{1.0};      ///< of SignFlipPValue
-  PairedCounts success;              ///< first: imagination
+  reports::PairedCounts success;              ///< first: imagination
   int num_differ{0};                 ///< tasks in which both chose differently
 };
 
@@ -76,20 +76,20 @@ struct CalibrationReport {
   int num_durations{0};      ///< predicted successes that succeeded
   std::vector<int> pit;      ///< ten equal bins
   TestResult pit_uniform;
-  Interval duration_coverage;  ///< of the middle 90 % of imagined durations
+  reports::Interval duration_coverage;  ///< of the middle 90 % of imagined durations
   struct Group {
     std::string name;
     int num_steps{0}, num_success{0};
     double predicted{0.0};  ///< mean share
-    Interval success;       ///< of what happened, exact
+    reports::Interval success;       ///< of what happened, exact
     BrierParts brier;
   };
   std::vector<Group> groups;  ///< by motion set, then by load and motion set
   // Against the oracle's plays; empty without.
   int num_actions{0};          ///< load, route, height and motion set
-  Interval correlation;        ///< Pearson's
+  reports::Interval correlation;        ///< Pearson's
   double rank_violation{0.0};  ///< mean maximum
-  Interval success_coverage;   ///< intervals of success that hold the share of the oracle's plays
+  reports::Interval success_coverage;   ///< intervals of success that hold the share of the oracle's plays
 };
 
 struct DecisionReport {
@@ -113,4 +113,4 @@ std::string CalibrationText(const CalibrationReport& report);
 nlohmann::ordered_json ToJson(const DecisionReport& report, const std::string& command);
 nlohmann::ordered_json ToJson(const CalibrationReport& report);
 
-}  // namespace hires::evaluation
+}  // namespace hires::lab

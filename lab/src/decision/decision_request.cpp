@@ -1,7 +1,7 @@
 #include "hires/base/hash.h"
 #include "lab/src/decision/decision_play.h"
 
-namespace hires::evaluation {
+namespace hires::lab {
 namespace {
 
 using base::Hasher;
@@ -78,4 +78,4 @@ std::uint64_t RequestHash(const DecisionTask& task, const DecisionParts& parts) 
   return hasher.value();
 }
 
-}  // namespace hires::evaluation
+}  // namespace hires::lab

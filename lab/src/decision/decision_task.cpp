@@ -12,7 +12,7 @@
 #include "lab/src/decision/decision.h"
 #include "hires/world/fall_code.h"
 
-namespace hires::evaluation {
+namespace hires::lab {
 namespace {
 
 using base::Between;
@@ -178,4 +178,4 @@ const std::vector<std::string>& DecisionAlternatives() {
   return sets;
 }
 
-}  // namespace hires::evaluation
+}  // namespace hires::lab

@@ -6,7 +6,7 @@
 #include "lab/src/decision/decision_report.h"
 #include "reports/report_table.h"
 
-namespace hires::evaluation {
+namespace hires::lab {
 namespace {
 
 using nlohmann::ordered_json;
@@ -14,12 +14,12 @@ using nlohmann::ordered_json;
 constexpr char kTruthOfSame[] =
     "same is imagination's own model: it tests the plumbing, not whether decisions are right";
 
-std::string IntervalText(const Interval& interval, int digits = 1) {
+std::string IntervalText(const reports::Interval& interval, int digits = 1) {
   return fmt::format("{:.{}f} ({:.{}f} .. {:.{}f})", interval.estimate, digits, interval.lower,
                      digits, interval.upper, digits);
 }
 
-std::string IntervalText(const std::optional<Interval>& interval) {
+std::string IntervalText(const std::optional<reports::Interval>& interval) {
   return interval ? IntervalText(*interval) : "-";
 }
 
@@ -41,7 +41,7 @@ std::string ArmTable(const DecisionReport& report, const ScaledVerdict& verdict)
          fmt::format("{:.0f} s", arm.simulated_seconds), fmt::format("{:.0f} s", arm.wall_seconds),
          fmt::format("{:.0f} s", arm.processor_seconds)});
   }
-  return FormatTable(rows);
+  return reports::FormatTable(rows);
 }
 
 std::string RegretLine(const ScaledVerdict& verdict) {
@@ -65,16 +65,16 @@ std::string ComparisonTable(const DecisionReport& report, const ScaledVerdict& v
                     fmt::format("{:.3g}", c.sign_p_value), IntervalText(c.expected),
                     c.expected ? fmt::format("{:.3g}", c.expected_p_value) : "-",
                     fmt::format("{} / {}", c.success.only_first, c.success.only_second),
-                    fmt::format("{:.3g}", McNemarPValue(c.success))});
+                    fmt::format("{:.3g}", reports::McNemarPValue(c.success))});
   }
-  return "\n" + FormatTable(rows);
+  return "\n" + reports::FormatTable(rows);
 }
 
-ordered_json IntervalToJson(const Interval& interval) {
+ordered_json IntervalToJson(const reports::Interval& interval) {
   return {{"mean", interval.estimate}, {"lower", interval.lower}, {"upper", interval.upper}};
 }
 
-ordered_json IntervalToJson(const std::optional<Interval>& interval) {
+ordered_json IntervalToJson(const std::optional<reports::Interval>& interval) {
   return interval ? IntervalToJson(*interval) : ordered_json();
 }
 
@@ -134,7 +134,7 @@ ordered_json ComparisonToJson(const ArmComparison& c) {
            c.expected ? ordered_json(c.expected_p_value) : ordered_json()},
           {"success_only_imagination", c.success.only_first},
           {"success_only_other", c.success.only_second},
-          {"success_p_value", McNemarPValue(c.success)}};
+          {"success_p_value", reports::McNemarPValue(c.success)}};
 }
 
 ordered_json VerdictToJson(const ScaledVerdict& verdict) {
@@ -207,14 +207,14 @@ std::string CalibrationText(const CalibrationReport& report) {
                     fmt::format("{:.3f}", bin.share),
                     fmt::format("{:.3f} .. {:.3f}", bin.band_lower, bin.band_upper)});
   }
-  text += "\n" + FormatTable(rows);
+  text += "\n" + reports::FormatTable(rows);
   rows = {{"action", "steps", "predicted", "happened (95 %)", "Brier"}};
   for (const CalibrationReport::Group& group : report.groups) {
     rows.push_back({group.name, std::to_string(group.num_steps),
                     fmt::format("{:.3f}", group.predicted), IntervalText(group.success, 3),
                     fmt::format("{:.4f}", group.brier.score)});
   }
-  return text + "\n" + FormatTable(rows);
+  return text + "\n" + reports::FormatTable(rows);
 }
 
 ordered_json ToJson(const DecisionReport& report, const std::string& command) {
@@ -261,4 +261,4 @@ ordered_json ToJson(const CalibrationReport& report) {
           {"groups", groups}};
 }
 
-}  // namespace hires::evaluation
+}  // namespace hires::lab

@@ -8,7 +8,7 @@
 
 // Predicting how long an action takes on a robot from how long it takes when it is played, with
 // numbers that are fitted on other routes only.
-namespace hires::evaluation {
+namespace hires::lab {
 
 /// What is fitted, the rest being 0 s and 1.
 enum class DurationModel {
@@ -62,7 +62,7 @@ struct LeftOutPredictions {
   std::vector<DurationFold> folds;
   double mean_error{0.0};     ///< [s] of absolute errors
   double largest_error{0.0};  ///< [s]
-  Interval error;             ///< of the mean; routes count as independent, rows of one do not
+  reports::Interval error;             ///< of the mean; routes count as independent, rows of one do not
 
   const DurationFold& FoldOf(const std::string& route) const;
 };
@@ -75,4 +75,4 @@ struct LeftOutPredictions {
 /// @throws std::logic_error if broken.
 LeftOutPredictions PredictLeftOut(const std::vector<DurationPredictor>& predictors);
 
-}  // namespace hires::evaluation
+}  // namespace hires::lab

@@ -7,7 +7,7 @@
 
 #include "hires/imagination/evidence.h"
 
-namespace hires::evaluation {
+namespace hires::lab {
 namespace {
 
 TimedRuns TimedOf(const Rollouts& rollouts) {
@@ -22,7 +22,7 @@ TimedRuns TimedOf(const Rollouts& rollouts) {
 }  // namespace
 
 double TimedRuns::mean() const {
-  return durations.empty() ? std::numeric_limits<double>::quiet_NaN() : Mean(durations);
+  return durations.empty() ? std::numeric_limits<double>::quiet_NaN() : reports::Mean(durations);
 }
 
 FoundDurations::FoundDurations(const DurationsConfig& durations, const DurationPlays& plays)
@@ -73,4 +73,4 @@ std::string WithSigma(double mean, double sigma) {
 
 double WorseOf(double a, double b) { return std::isnan(a) || a > b ? a : b; }
 
-}  // namespace hires::evaluation
+}  // namespace hires::lab

@@ -8,7 +8,7 @@
 #include "lab/src/experiment/kinds.h"
 
 // What the experiment `durations` found, under both readings of the published names of routes.
-namespace hires::evaluation {
+namespace hires::lab {
 
 /// A row that is read as to/from is compared with the way back of what it says from/to.
 struct DurationReading {
@@ -64,4 +64,4 @@ double WorseOf(double a, double b);                          ///< the larger; no
 /// Tables and measures of drives, torso and arms that are predicted from other routes.
 void AddDurationPredictions(const FoundDurations& found, Findings* findings);
 
-}  // namespace hires::evaluation
+}  // namespace hires::lab

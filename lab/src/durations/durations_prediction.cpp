@@ -5,7 +5,7 @@
 
 #include "lab/src/durations/durations_found.h"
 
-namespace hires::evaluation {
+namespace hires::lab {
 namespace {
 
 constexpr std::array<DurationModel, 4> kPhysical{
@@ -170,4 +170,4 @@ void AddDurationPredictions(const FoundDurations& found, Findings* findings) {
   AddPosturePredictions(found, findings);
 }
 
-}  // namespace hires::evaluation
+}  // namespace hires::lab

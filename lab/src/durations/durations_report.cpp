@@ -9,7 +9,7 @@
 #include "hires/base/text.h"
 #include "hires/imagination/evidence.h"
 
-namespace hires::evaluation {
+namespace hires::lab {
 namespace {
 
 std::vector<std::string> LineOfMeans(const FoundDurations& found, std::size_t r) {
@@ -80,7 +80,7 @@ PlayedErrors ErrorsOf(const FoundDurations& found, const DurationAction& action,
     errors.push_back(std::abs(found.MeanOf(planner, r, reading) - expected));
     out.largest = WorseOf(errors.back(), out.largest);
   }
-  out.mean = errors.empty() ? std::numeric_limits<double>::quiet_NaN() : Mean(errors);
+  out.mean = errors.empty() ? std::numeric_limits<double>::quiet_NaN() : reports::Mean(errors);
   return out;
 }
 
@@ -186,4 +186,4 @@ Findings SumUpDurations(const DurationsConfig& durations, const DurationPlays& p
   return findings;
 }
 
-}  // namespace hires::evaluation
+}  // namespace hires::lab

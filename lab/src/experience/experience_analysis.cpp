@@ -11,7 +11,7 @@
 #include "lab/src/experience/experience_report.h"
 #include "reports/report_table.h"
 
-namespace hires::evaluation {
+namespace hires::lab {
 namespace {
 
 using nlohmann::ordered_json;
@@ -43,7 +43,7 @@ std::string FilterTable(const ordered_json& trial) {
       "from the "
       "autocorrelation\n{}",
       trial.at("noise").get<double>(), trial.at("window").get<std::size_t>(),
-      trial.at("cutoff").get<double>(), FormatTable(rows));
+      trial.at("cutoff").get<double>(), reports::FormatTable(rows));
 }
 
 std::string MotionSetTable(const ordered_json& sets) {
@@ -55,7 +55,7 @@ std::string MotionSetTable(const ordered_json& sets) {
     rows.push_back({set.at("motion_set").get<std::string>(), whole("runs"), whole("falls"),
                     whole("calm_windows")});
   }
-  return FormatTable(rows);
+  return reports::FormatTable(rows);
 }
 
 std::string PredictionTable(const ordered_json& prediction) {
@@ -74,7 +74,7 @@ std::string PredictionTable(const ordered_json& prediction) {
       prediction.at("falls").get<std::size_t>(),
       prediction.at("falls_too_early").get<std::size_t>(),
       prediction.at("calm_windows").get<std::size_t>(), prediction.at("ahead").get<double>(),
-      MotionSetTable(prediction.at("motion_sets")), FormatTable(rows));
+      MotionSetTable(prediction.at("motion_sets")), reports::FormatTable(rows));
 }
 
 }  // namespace
@@ -101,4 +101,4 @@ ordered_json AnalysisOf(const knowledge::ExperienceStore& store, std::uint64_t s
   return analysis;
 }
 
-}  // namespace hires::evaluation
+}  // namespace hires::lab

@@ -5,7 +5,7 @@
 #include <map>
 #include <nlohmann/json.hpp>
 
-namespace hires::evaluation {
+namespace hires::lab {
 namespace {
 
 using knowledge::ToppleEpisodePart;
@@ -198,4 +198,4 @@ ordered_json PicturesOf(const std::vector<ExperienceRun>& runs) {
           {"falls", PlacesOfFalls(runs)}};
 }
 
-}  // namespace hires::evaluation
+}  // namespace hires::lab

@@ -6,7 +6,7 @@
 
 #include "hires/knowledge/experience.h"
 
-namespace hires::evaluation {
+namespace hires::lab {
 
 /// What is in a store: parts by action and state, falls, episodes, time, size.
 /// @param text  the same for people.
@@ -20,4 +20,4 @@ nlohmann::ordered_json StatsOf(const knowledge::ExperienceStore& store, std::str
 nlohmann::ordered_json AnalysisOf(const knowledge::ExperienceStore& store, std::uint64_t seed,
                                   std::string* text);
 
-}  // namespace hires::evaluation
+}  // namespace hires::lab

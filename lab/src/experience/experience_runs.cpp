@@ -5,7 +5,7 @@
 
 #include "hires/base/text.h"
 
-namespace hires::evaluation {
+namespace hires::lab {
 namespace {
 
 bool IsDown(const knowledge::ToppleEpisodePart& part) {
@@ -60,4 +60,4 @@ std::vector<std::size_t> OnsetsOf(const Stretch& stretch) {
   return onsets;
 }
 
-}  // namespace hires::evaluation
+}  // namespace hires::lab

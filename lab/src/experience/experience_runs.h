@@ -5,7 +5,7 @@
 
 #include "hires/knowledge/experience.h"
 
-namespace hires::evaluation {
+namespace hires::lab {
 
 /// What one run went through while one action lasted: parts without a gap.
 using Stretch = std::vector<knowledge::ToppleEpisodePart>;
@@ -30,4 +30,4 @@ std::vector<std::string> MotionSetsOf(const std::vector<ExperienceRun>& runs);
 /// The parts in which a fall begins: the load topples, and did not in the part before.
 std::vector<std::size_t> OnsetsOf(const Stretch& stretch);
 
-}  // namespace hires::evaluation
+}  // namespace hires::lab

@@ -9,7 +9,7 @@
 #include "reports/report_table.h"
 #include "hires/imagination/evidence.h"
 
-namespace hires::evaluation {
+namespace hires::lab {
 namespace {
 
 using knowledge::ToppleState;
@@ -76,7 +76,7 @@ std::string TextOf(const ordered_json& stats) {
                         ? ""
                         : fmt::format("{:.3f}", row.at("confidence").get<double>())});
   }
-  return fmt::format("{}\n{} parts of {} runs, {} episodes, {:.1f} bytes each\n", FormatTable(rows),
+  return fmt::format("{}\n{} parts of {} runs, {} episodes, {:.1f} bytes each\n", reports::FormatTable(rows),
                      stats.at("parts").get<std::uint64_t>(), stats.at("runs").get<std::size_t>(),
                      stats.at("episodes").get<std::size_t>(),
                      stats.at("bytes_per_part").get<double>());
@@ -111,4 +111,4 @@ ordered_json StatsOf(const knowledge::ExperienceStore& store, std::string* text)
   return stats;
 }
 
-}  // namespace hires::evaluation
+}  // namespace hires::lab

@@ -9,7 +9,7 @@
 #include "lab/src/experience/separation.h"
 #include "reports/known_number.h"
 
-namespace hires::evaluation {
+namespace hires::lab {
 namespace {
 
 using knowledge::ToppleEpisodePart;
@@ -125,17 +125,17 @@ ordered_json FeatureJson(const Feature& feature, const std::vector<ExperienceRun
       JudgedAt(EveryOther(runs, 1), BestThreshold(EveryOther(runs, 0)).threshold);
   ordered_json alarms = ordered_json::array(), hits = ordered_json::array();
   for (const RocPoint& point : RocOf(runs, kRocPoints)) {
-    alarms.push_back(NumberOrNull(point.false_alarms));
-    hits.push_back(NumberOrNull(point.hits));
+    alarms.push_back(reports::NumberOrNull(point.false_alarms));
+    hits.push_back(reports::NumberOrNull(point.hits));
   }
   return {{"feature", feature.name},
-          {"area", IntervalJson(AreaInterval(StrataOf(runs, MotionSetsOf(experiences)), rng))},
+          {"area", reports::IntervalJson(AreaInterval(StrataOf(runs, MotionSetsOf(experiences)), rng))},
           {"area_within",
-           IntervalJson(AreaIntervalWithin(MotionSetsToCompare(experiences, feature), rng))},
+           reports::IntervalJson(AreaIntervalWithin(MotionSetsToCompare(experiences, feature), rng))},
           {"judged",
-           {{"threshold", NumberOrNull(judged.threshold)},
-            {"hits", NumberOrNull(judged.hits)},
-            {"false_alarms", NumberOrNull(judged.false_alarms)}}},
+           {{"threshold", reports::NumberOrNull(judged.threshold)},
+            {"hits", reports::NumberOrNull(judged.hits)},
+            {"false_alarms", reports::NumberOrNull(judged.false_alarms)}}},
           {"roc", {{"false_alarms", alarms}, {"hits", hits}}}};
 }
 
@@ -163,4 +163,4 @@ ordered_json PredictFalls(const std::vector<ExperienceRun>& runs, const base::Rn
           {"features", features}};
 }
 
-}  // namespace hires::evaluation
+}  // namespace hires::lab

@@ -8,7 +8,7 @@
 #include "lab/src/experience/separation.h"
 #include "reports/known_number.h"
 
-namespace hires::evaluation {
+namespace hires::lab {
 namespace {
 
 using nlohmann::ordered_json;
@@ -139,12 +139,12 @@ ordered_json TryOne(const std::string& name, bool is_causal, const Filter& filte
     }
   }
   const auto root = [&](double squares) { return std::sqrt(squares / errors.count); };
-  const Interval area = AreaInterval(StrataOf(scores, kinds), rng);
+  const reports::Interval area = AreaInterval(StrataOf(scores, kinds), rng);
   return {{"filter", name},
           {"causal", is_causal},
           {"rms_error", {{"v", root(errors.v)}, {"a", root(errors.a)}, {"j", root(errors.j)}}},
           {"delay", knowledge::kExperiencePeriod * errors.delay / errors.stretches},
-          {"separation", IntervalJson(area)}};
+          {"separation", reports::IntervalJson(area)}};
 }
 
 }  // namespace
@@ -180,4 +180,4 @@ ordered_json TryFilters(const std::vector<ExperienceRun>& runs, const base::Rng&
           {"filters", filters}};
 }
 
-}  // namespace hires::evaluation
+}  // namespace hires::lab

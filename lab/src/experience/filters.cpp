@@ -6,7 +6,7 @@
 #include "reports/statistics.h"
 #include "hires/geometry/angles.h"
 
-namespace hires::evaluation {
+namespace hires::lab {
 namespace {
 
 /// Calls `take` with each window of the signal, its ends going on.
@@ -55,7 +55,7 @@ double Correlation(const std::vector<double>& a, double mean_a, const std::vecto
 std::vector<double> MovingAverage(const std::vector<double>& signal, std::size_t window,
                                   bool is_causal) {
   return OverWindows(signal, window, is_causal,
-                     [](const std::vector<double>* values) { return Mean(*values); });
+                     [](const std::vector<double>* values) { return reports::Mean(*values); });
 }
 
 std::vector<double> MovingMedian(const std::vector<double>& signal, std::size_t window,
@@ -90,7 +90,7 @@ std::vector<double> Filtered(const std::vector<double>& signal, const SecondOrde
 }
 
 std::vector<double> Autocorrelation(const std::vector<double>& signal, std::size_t max_lag) {
-  const double mean = Mean(signal);
+  const double mean = reports::Mean(signal);
   std::vector<double> correlation(max_lag + 1, 0.0);
   const double whole = Correlation(signal, mean, signal, mean, 0);
   if (whole == 0.0) return correlation;
@@ -114,7 +114,7 @@ std::vector<double> CentralDifferences(const std::vector<double>& signal, double
 
 std::size_t DelayOf(const std::vector<double>& signal, const std::vector<double>& later,
                     std::size_t max_lag) {
-  const double mean_a = Mean(signal), mean_b = Mean(later);
+  const double mean_a = reports::Mean(signal), mean_b = reports::Mean(later);
   std::size_t best = 0;
   double most = Correlation(signal, mean_a, later, mean_b, 0);
   for (std::size_t lag = 1; lag <= max_lag; ++lag) {
@@ -126,4 +126,4 @@ std::size_t DelayOf(const std::vector<double>& signal, const std::vector<double>
   return best;
 }
 
-}  // namespace hires::evaluation
+}  // namespace hires::lab

@@ -3,7 +3,7 @@
 #include <cstddef>
 #include <vector>
 
-namespace hires::evaluation {
+namespace hires::lab {
 
 // Filters of evenly sampled signals (dissertation, section 6.3.1). Beyond a signal's ends its first
 // and last value go on.
@@ -41,4 +41,4 @@ std::vector<double> CentralDifferences(const std::vector<double>& signal, double
 std::size_t DelayOf(const std::vector<double>& signal, const std::vector<double>& later,
                     std::size_t max_lag);
 
-}  // namespace hires::evaluation
+}  // namespace hires::lab

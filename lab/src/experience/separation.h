@@ -7,7 +7,7 @@
 #include "reports/statistics.h"
 
 // How well a number tells two kinds of moments apart, where moments of one run are not independent.
-namespace hires::evaluation {
+namespace hires::lab {
 
 constexpr int kAreaResamples = 2000;  ///< of runs, for an interval of an area
 
@@ -30,12 +30,12 @@ double AreaUnderCurve(const std::vector<RunScores>& runs);
 
 /// The area under the curve of all runs together, with the 2.5 % and 97.5 % percentiles over
 /// kAreaResamples resamples of whole runs.
-Interval AreaInterval(const Strata& strata, base::Rng rng);
+reports::Interval AreaInterval(const Strata& strata, base::Rng rng);
 
 /// Likewise of how often a positive has the larger number than a negative of its own stratum: areas
 /// of the strata, weighted by their positives; strata that lack positives or negatives are left
 /// out.
-Interval AreaIntervalWithin(const Strata& strata, base::Rng rng);
+reports::Interval AreaIntervalWithin(const Strata& strata, base::Rng rng);
 
 struct RocPoint {
   double threshold{0.0}, false_alarms{0.0}, hits{0.0};  ///< shares
@@ -48,4 +48,4 @@ RocPoint BestThreshold(const std::vector<RunScores>& runs);
 /// What a threshold does to these runs.
 RocPoint JudgedAt(const std::vector<RunScores>& runs, double threshold);
 
-}  // namespace hires::evaluation
+}  // namespace hires::lab

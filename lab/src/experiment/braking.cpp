@@ -13,7 +13,7 @@
 #include "hires/simulation/fall_watch.h"
 #include "hires/simulation/robot_simulator.h"
 
-namespace hires::evaluation {
+namespace hires::lab {
 namespace {
 
 using geometry::Twist2;
@@ -256,4 +256,4 @@ std::optional<std::vector<BrakingPlay>> PlayBraking(const BrakingConfig& braking
   return plays;
 }
 
-}  // namespace hires::evaluation
+}  // namespace hires::lab

@@ -12,7 +12,7 @@
 
 // How a loaded base comes to a stand, and what becomes of the load: along the guard's ramp, at the
 // limit of the base's controller, harder, by its time-out, at once.
-namespace hires::evaluation {
+namespace hires::lab {
 
 /// [m/s], [rad/s] of a base that stands.
 inline constexpr double kStandingSpeed = 0.01;
@@ -101,4 +101,4 @@ std::optional<std::vector<BrakingPlay>> PlayBraking(const BrakingConfig& braking
                                                     const Stage& stage, const base::Crew& crew);
 Findings SumUpBraking(const BrakingConfig& braking, const std::vector<BrakingPlay>& plays);
 
-}  // namespace hires::evaluation
+}  // namespace hires::lab

@@ -14,7 +14,7 @@
 #include "hires/physics/closed_forms.h"
 
 // What is played, and what closed forms say about it.
-namespace hires::evaluation {
+namespace hires::lab {
 namespace {
 
 using base::Between;
@@ -148,4 +148,4 @@ std::vector<BrakingPlay> BrakingCells(const BrakingConfig& braking, const Stage&
   return plays;
 }
 
-}  // namespace hires::evaluation
+}  // namespace hires::lab

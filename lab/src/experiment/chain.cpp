@@ -6,7 +6,7 @@
 #include "hires/base/text.h"
 #include "hires/geometry/angles.h"
 
-namespace hires::evaluation {
+namespace hires::lab {
 namespace {
 
 using geometry::Pose2;
@@ -125,4 +125,4 @@ bool Chain::SettleLoad(const world::WorldState& final_world, const Pose2& X_MB) 
   return has_put_back;
 }
 
-}  // namespace hires::evaluation
+}  // namespace hires::lab

@@ -10,7 +10,7 @@
 #include "lab/src/experiment/places.h"
 #include "lab/src/experiment/stage.h"
 
-namespace hires::evaluation {
+namespace hires::lab {
 
 /// One drive of a chain of drives.
 struct Leg {
@@ -23,7 +23,7 @@ struct Leg {
   double clearance{0.0};  ///< [m] the smallest to anything, at most kFarClearance; at 20 Hz
   PlaceTrail places;      ///< at 20 Hz, where the robot finds its place by itself
   imagination::OutcomeCounts counts_10hz;  ///< every other sample
-  std::vector<ToppleSample> samples;       ///< at 20 Hz, where wanted; of the chain's own time
+  std::vector<reports::ToppleSample> samples;       ///< at 20 Hz, where wanted; of the chain's own time
   bool was_put_back{false};   ///< afterwards something carried was put back to its place
   bool was_restarted{false};  ///< afterwards the robot was put to the goal, as it could not go on
 };
@@ -66,4 +66,4 @@ class Chain {
   double time_{0.0};  // [s] at the end of the last leg
 };
 
-}  // namespace hires::evaluation
+}  // namespace hires::lab

@@ -11,7 +11,7 @@
 #include "lab/src/experiment/experiment.h"
 #include "hires/imagination/imagination_setup.h"
 
-namespace hires::evaluation {
+namespace hires::lab {
 namespace {
 
 using base::Between;
@@ -316,4 +316,4 @@ std::size_t WayBack(const DurationsConfig& durations, std::size_t row) {
 
 std::string KindName(const ExperimentConfig& config) { return kKinds[config.kind.index()]; }
 
-}  // namespace hires::evaluation
+}  // namespace hires::lab

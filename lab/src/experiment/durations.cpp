@@ -7,7 +7,7 @@
 #include "base/parallel.h"
 #include "hires/base/text.h"
 
-namespace hires::evaluation {
+namespace hires::lab {
 namespace {
 
 using Planner = DurationsConfig::Planner;
@@ -111,4 +111,4 @@ std::optional<DurationPlays> PlayDurations(const DurationsConfig& durations,
   return plays;
 }
 
-}  // namespace hires::evaluation
+}  // namespace hires::lab

@@ -10,7 +10,7 @@
 #include "lab/src/experiment/stage.h"
 #include "hires/base/error.h"
 
-namespace hires::evaluation {
+namespace hires::lab {
 namespace {
 
 using base::ActionCall;
@@ -229,4 +229,4 @@ ExperimentReport UnplayedReport(const ExperimentConfig& config) {
   return Unplayed(config, MakeStage(config));
 }
 
-}  // namespace hires::evaluation
+}  // namespace hires::lab

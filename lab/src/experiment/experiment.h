@@ -16,7 +16,7 @@
 #include "hires/knowledge/experience.h"
 #include "hires/simulation/self_localisation.h"
 
-namespace hires::evaluation {
+namespace hires::lab {
 
 /// A named pose of the robot's base in the map.
 struct Goal {
@@ -145,4 +145,4 @@ std::optional<ExperimentReport> RunExperiment(const ExperimentConfig& config,
 /// @throws base::ConfigError for what cannot be loaded.
 ExperimentReport UnplayedReport(const ExperimentConfig& config);
 
-}  // namespace hires::evaluation
+}  // namespace hires::lab

@@ -16,7 +16,7 @@
 #include "hires/base/text.h"
 #include "reports/timeline.h"
 
-namespace hires::evaluation {
+namespace hires::lab {
 namespace {
 
 using nlohmann::ordered_json;
@@ -116,11 +116,11 @@ Breach NotThere(const HypothesisGoal& goal, const simulation::RunTruth& truth) {
 }
 
 /// Whether it was carried through: not cancelled, refused or asked again.
-bool HasVerdict(const ImaginedStep& step) {
-  return step.answered && !step.predictions.empty() && step.outcome != ImaginedOutcome::kCancelled;
+bool HasVerdict(const loop::ImaginedStep& step) {
+  return step.answered && !step.predictions.empty() && step.outcome != loop::ImaginedOutcome::kCancelled;
 }
 
-std::string RecommendationOf(const ImaginedStep& step) {
+std::string RecommendationOf(const loop::ImaginedStep& step) {
   const auto index = static_cast<std::size_t>(step.recommended);
   if (step.recommended < 0 || index >= step.predictions.size()) return "none";
   return base::ToString(step.predictions[index].action);
@@ -230,10 +230,10 @@ void Judge(const HypothesisGoal& goal, const std::vector<WantedPlace>& places,
   for (const auto& [name, object] : truth.objects) run->falls += object.falls;
 }
 
-void CountReport(const AchieveReport& report, HypothesisRun* run) {
+void CountReport(const loop::AchieveReport& report, HypothesisRun* run) {
   run->outcome = ToString(report.outcome);
   run->reason = report.reason;
-  run->duration = MakeTimeline(report).duration;
+  run->duration = reports::MakeTimeline(report).duration;
   run->replans = report.status.replans;
   run->steps = static_cast<int>(
       std::count_if(report.status.steps.begin(), report.status.steps.end(),
@@ -242,7 +242,7 @@ void CountReport(const AchieveReport& report, HypothesisRun* run) {
   // Of steps that were begun. One that a repair took over may stand in several plans; what was
   // asked last counts, for it is asked again where an answer counts no more.
   std::map<std::pair<double, std::string>, bool> is_answered;
-  for (const ImaginedStep& step : report.status.imaginations) {
+  for (const loop::ImaginedStep& step : report.status.imaginations) {
     const bool in_time = HasVerdict(step) && *step.answered <= step.dispatch.value_or(-1.0);
     if (step.dispatch)
       is_answered[{*step.dispatch, base::CanonicalName(step.action.name)}] = in_time;
@@ -254,4 +254,4 @@ void CountReport(const AchieveReport& report, HypothesisRun* run) {
   for (const auto& [step, in_time] : is_answered) run->in_time += in_time ? 1 : 0;
 }
 
-}  // namespace hires::evaluation
+}  // namespace hires::lab

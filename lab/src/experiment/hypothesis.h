@@ -14,7 +14,7 @@
 
 // The project's hypothesis: a robot that imagines critical steps before it does them does its tasks
 // more surely. Measured with the whole system, on equal hidden truths with and without imagination.
-namespace hires::evaluation {
+namespace hires::lab {
 
 /// What counts as success in a scenario, and how long a run may take.
 struct HypothesisGoal {
@@ -105,11 +105,11 @@ void Judge(const HypothesisGoal& goal, const std::vector<WantedPlace>& places,
            const simulation::RunTruth& truth, HypothesisRun* run);
 
 /// What the execution monitor reports, counted.
-void CountReport(const AchieveReport& report, HypothesisRun* run);
+void CountReport(const loop::AchieveReport& report, HypothesisRun* run);
 
 /// Plays one run with a system of its own.
 /// @return the record, also of a run that broke down; nothing when cancelled.
 using PlayHypothesis = std::function<std::optional<HypothesisRun>(
     const HypothesisOrder& order, const std::function<bool()>& cancelled)>;
 
-}  // namespace hires::evaluation
+}  // namespace hires::lab

@@ -7,7 +7,7 @@
 
 #include "hires/base/error.h"
 
-namespace hires::evaluation {
+namespace hires::lab {
 namespace {
 
 using nlohmann::ordered_json;
@@ -52,4 +52,4 @@ void HypothesisJournal::Append(const HypothesisRun& run) {
   runs_.push_back(run);
 }
 
-}  // namespace hires::evaluation
+}  // namespace hires::lab

@@ -6,7 +6,7 @@
 #include "lab/src/experiment/hypothesis_report.h"
 #include "lab/src/run_journal.h"
 
-namespace hires::evaluation {
+namespace hires::lab {
 
 /// The finished runs of an experiment (RunJournal).
 class HypothesisJournal {
@@ -27,4 +27,4 @@ class HypothesisJournal {
   RunJournal journal_;  // last: what is there is told to the others
 };
 
-}  // namespace hires::evaluation
+}  // namespace hires::lab

@@ -4,10 +4,10 @@
 
 #include "hires/base/failure.h"
 
-namespace hires::cli {
+namespace hires::lab {
 namespace {
 
-loop::LoopOrder LoopOrderOf(const evaluation::HypothesisOrder& order,
+loop::LoopOrder LoopOrderOf(const HypothesisOrder& order,
                             const std::string& package_folder, const std::string& truth) {
   loop::LoopOrder play;
   play.scenario = package_folder + "/config/scenarios/" + order.scenario + ".yaml";
@@ -18,24 +18,24 @@ loop::LoopOrder LoopOrderOf(const evaluation::HypothesisOrder& order,
   return play;
 }
 
-std::vector<evaluation::WantedPlace> PlacesIn(const loop::LoopSetup& setup,
-                                              const evaluation::HypothesisGoal& goal) {
+std::vector<WantedPlace> PlacesIn(const loop::LoopSetup& setup,
+                                              const HypothesisGoal& goal) {
   const imagination::ImaginationSetup& world = setup.world();
   const double area_edge = world.skills->manipulation->params.place.area_edge;
-  return evaluation::PlacesOf(goal, world.scene->world, area_edge);
+  return PlacesOf(goal, world.scene->world, area_edge);
 }
 
 }  // namespace
 
-std::optional<evaluation::HypothesisRun> PlayHypothesisLocally(
+std::optional<HypothesisRun> PlayHypothesisLocally(
     const loop::LoopSetup& setup, const std::string& package_folder, const std::string& truth,
-    const evaluation::HypothesisOrder& order, const std::function<bool()>& cancelled) {
+    const HypothesisOrder& order, const std::function<bool()>& cancelled) {
   const loop::LoopRun played =
       loop::PlayTask(setup, LoopOrderOf(order, package_folder, truth), {}, cancelled);
   if (cancelled && cancelled()) return std::nullopt;
-  evaluation::HypothesisRun run;
-  evaluation::CountReport(played.report, &run);
-  evaluation::Judge(order.goal, PlacesIn(setup, order.goal), played.truth, &run);
+  HypothesisRun run;
+  CountReport(played.report, &run);
+  Judge(order.goal, PlacesIn(setup, order.goal), played.truth, &run);
   run.is_complete = !played.is_timed_out;
   if (played.is_timed_out) {
     run.outcome = base::ToString(base::FailureCode::kTimedOut);
@@ -44,4 +44,4 @@ std::optional<evaluation::HypothesisRun> PlayHypothesisLocally(
   return run;
 }
 
-}  // namespace hires::cli
+}  // namespace hires::lab

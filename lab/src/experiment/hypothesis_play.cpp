@@ -12,7 +12,7 @@
 #include "hires/base/text.h"
 #include "reports/timeline.h"
 
-namespace hires::cli {
+namespace hires::lab {
 namespace {
 
 namespace fs = std::filesystem;
@@ -24,7 +24,7 @@ constexpr double kExtraTime = 180.0;  // [s] beyond its limit, after which a run
 constexpr useconds_t kPoll = 50000;   // [us]
 
 /// How long the process may live: the run watches its own limit, and stops the robot first.
-double DeadlineOf(const evaluation::HypothesisOrder& order) {
+double DeadlineOf(const HypothesisOrder& order) {
   return base::SteadyNow() + order.goal.wall_limit + kExtraTime;
 }
 
@@ -42,21 +42,21 @@ Ending Await(base::ChildProcess* process, double deadline, const std::function<b
   return Ending::kDone;
 }
 
-evaluation::HypothesisRun Broken(const std::string& outcome, const std::string& reason) {
-  evaluation::HypothesisRun run;
+HypothesisRun Broken(const std::string& outcome, const std::string& reason) {
+  HypothesisRun run;
   run.outcome = outcome;
   run.reason = reason;
   return run;
 }
 
-evaluation::HypothesisRun ReadRecord(const std::string& path, const std::string& how_it_ended,
+HypothesisRun ReadRecord(const std::string& path, const std::string& how_it_ended,
                                      const std::string& log) {
   std::error_code error;
   if (!fs::exists(path, error)) {
     return Broken("run_died", fmt::format("{}: {}", how_it_ended, base::LastLineOf(log)));
   }
   const ordered_json json = ordered_json::parse(base::ReadTextFile(path), nullptr, false);
-  return evaluation::ParseHypothesisRun(json, path);
+  return ParseHypothesisRun(json, path);
 }
 
 template <typename T>
@@ -86,26 +86,26 @@ void VisitOrder(Order* order, const Visitor& visit) {
 
 }  // namespace
 
-std::string HypothesisOrderText(const evaluation::HypothesisOrder& order) {
+std::string HypothesisOrderText(const HypothesisOrder& order) {
   ordered_json json;
   VisitOrder(&order, [&](const char* key, const auto* value) { json[key] = *value; });
   return json.dump(2) + '\n';
 }
 
-evaluation::HypothesisOrder ParseHypothesisOrder(const std::string& text,
+HypothesisOrder ParseHypothesisOrder(const std::string& text,
                                                  const std::string& where) {
   const ordered_json json = ordered_json::parse(text, nullptr, false);
-  evaluation::HypothesisOrder order;
+  HypothesisOrder order;
   VisitOrder(&order, [&](const char* key, auto* value) { TakeField(json, key, where, value); });
   return order;
 }
 
-std::optional<evaluation::HypothesisRun> PlayHypothesisRun(
-    const evaluation::HypothesisOrder& wanted, const std::function<bool()>& cancelled) {
+std::optional<HypothesisRun> PlayHypothesisRun(
+    const HypothesisOrder& wanted, const std::function<bool()>& cancelled) {
   base::AdoptOrphans();
   const base::RunFolder folder(wanted.folder);
   const base::PortClaim ports(wanted.workers + 1);
-  evaluation::HypothesisOrder order = wanted;
+  HypothesisOrder order = wanted;
   order.folder = folder.path();
   const std::string order_path = order.folder + "/order.json";
   const std::string record_path = order.folder + "/record.json";
@@ -129,4 +129,4 @@ std::optional<evaluation::HypothesisRun> PlayHypothesisRun(
   return ReadRecord(record_path, how_it_ended, log_path);
 }
 
-}  // namespace hires::cli
+}  // namespace hires::lab

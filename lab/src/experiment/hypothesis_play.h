@@ -6,7 +6,7 @@
 
 #include "lab/src/experiment/hypothesis.h"
 
-namespace hires::cli {
+namespace hires::lab {
 
 /// The verb of `hires` that plays one run: `hires hypothesis_run ORDER.json RECORD.json
 /// FIRST_PORT`.
@@ -18,12 +18,12 @@ constexpr char kHypothesisRunVerb[] = "hypothesis_run";
 /// main().
 /// @return nothing when cancelled.
 /// @throws base::ConfigError if no run can be started at all.
-std::optional<evaluation::HypothesisRun> PlayHypothesisRun(const evaluation::HypothesisOrder& order,
+std::optional<HypothesisRun> PlayHypothesisRun(const HypothesisOrder& order,
                                                            const std::function<bool()>& cancelled);
 
 /// Orders as text, to hand them over.
-std::string HypothesisOrderText(const evaluation::HypothesisOrder& order);
+std::string HypothesisOrderText(const HypothesisOrder& order);
 /// @throws base::ConfigError naming `where` and the field.
-evaluation::HypothesisOrder ParseHypothesisOrder(const std::string& text, const std::string& where);
+HypothesisOrder ParseHypothesisOrder(const std::string& text, const std::string& where);
 
-}  // namespace hires::cli
+}  // namespace hires::lab

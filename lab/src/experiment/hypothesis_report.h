@@ -8,7 +8,7 @@
 #include "lab/src/experiment/hypothesis.h"
 #include "reports/statistics.h"
 
-namespace hires::evaluation {
+namespace hires::lab {
 
 /// What all runs had in common.
 struct HypothesisSetting {
@@ -28,7 +28,7 @@ struct HypothesisArm {
   int runs{0}, complete{0}, successes{0};
   int falls{0};                                 ///< of all objects in all runs
   std::map<std::string, int> broken_rules;      ///< complete runs that broke a rule of the judge
-  Interval success;                             ///< share, with the exact 95 % interval
+  reports::Interval success;                             ///< share, with the exact 95 % interval
   double duration_mean{0.0}, duration_sd{0.0};  ///< [s]; sd divides by n
   double steps{0.0}, replans{0.0};              ///< means
   int dispatched{0}, in_time{0};                ///< imaginations, see HypothesisRun
@@ -40,8 +40,8 @@ struct HypothesisReport {
   HypothesisSetting setting;
   std::vector<HypothesisRun> runs;  ///< by run, with imagination first
   HypothesisArm with, without;
-  PairedCounts pairs;   ///< of successes; first: with imagination
-  Interval difference;  ///< of the shares of success, with - without: PairedScoreInterval
+  reports::PairedCounts pairs;   ///< of successes; first: with imagination
+  reports::Interval difference;  ///< of the shares of success, with - without: PairedScoreInterval
 };
 
 /// @pre every run is there with and without imagination.  @throws std::logic_error if broken.
@@ -52,4 +52,4 @@ std::string HypothesisCsv(const HypothesisReport& report);   ///< a line per run
 /// For machines.  @param command  that repeats it.
 nlohmann::ordered_json ToJson(const HypothesisReport& report, const std::string& command);
 
-}  // namespace hires::evaluation
+}  // namespace hires::lab

@@ -16,7 +16,7 @@
 
 // The kinds of experiments: each has a function that plays and one that sums up what was played.
 // Summing up nothing gives the names of the measures.
-namespace hires::evaluation {
+namespace hires::lab {
 
 using Chains = std::vector<std::vector<Leg>>;
 using Rollouts = std::vector<imagination::RolloutResult>;
@@ -58,4 +58,4 @@ std::optional<DurationPlays> PlayDurations(const DurationsConfig& durations,
                                            const base::Crew& crew);
 Findings SumUpDurations(const DurationsConfig& durations, const DurationPlays& plays);
 
-}  // namespace hires::evaluation
+}  // namespace hires::lab

@@ -9,7 +9,7 @@
 #include "hires/base/text.h"
 #include "reports/statistics.h"
 
-namespace hires::evaluation {
+namespace hires::lab {
 namespace {
 
 enum LegStreams : std::uint64_t { kOrderStream, kChainStream };
@@ -58,7 +58,7 @@ class LegTally {
             fmt::format("{:.3f} rad", max_yaw_error),
             fmt::format("{}", beyond),
             fmt::format("{:.3f} m", clearance),
-            fmt::format("{:.1f} ± {:.1f} s", Mean(durations), Deviation(durations)),
+            fmt::format("{:.1f} ± {:.1f} s", reports::Mean(durations), reports::Deviation(durations)),
             reasons};
   }
 
@@ -115,7 +115,7 @@ std::vector<Measure> MeasuresOf(const LegTally& all, const std::map<std::string,
           {"max_distance", all.max_distance},
           {"max_yaw_error", all.max_yaw_error},
           {"min_clearance", all.clearance},
-          {"mean_duration", Mean(all.durations)},
+          {"mean_duration", reports::Mean(all.durations)},
           {"min_visits", static_cast<double>(min_visits)}};
 }
 
@@ -203,4 +203,4 @@ Findings SumUpLegs(const ExperimentConfig& config, const Stage& stage, const Cha
   return findings;
 }
 
-}  // namespace hires::evaluation
+}  // namespace hires::lab

@@ -9,7 +9,7 @@
 #include "hires/geometry/covariance.h"
 #include "hires/imagination/evidence.h"
 
-namespace hires::evaluation {
+namespace hires::lab {
 namespace {
 
 constexpr double kRate = 20.0;     // [Hz] of moments
@@ -138,4 +138,4 @@ std::vector<Measure> LostTally::Measures() const {
           {"wrong_and_sure_share", static_cast<double>(num_wrong_and_sure_) / moments}};
 }
 
-}  // namespace hires::evaluation
+}  // namespace hires::lab

@@ -9,7 +9,7 @@
 #include "hires/simulation/self_localisation.h"
 #include "hires/skills/lost_watch.h"
 
-namespace hires::evaluation {
+namespace hires::lab {
 
 /// @param lost  what makes it too unsure to drive
 PlaceMoment MomentOf(const simulation::SelfLocaliser& localiser, const skills::LostParams& lost);
@@ -37,4 +37,4 @@ class LostTally {
   std::vector<double> until_found_;  // [s] from being wrong first to being right for good
 };
 
-}  // namespace hires::evaluation
+}  // namespace hires::lab

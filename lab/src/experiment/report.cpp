@@ -13,7 +13,7 @@
 #include "hires/base/text.h"
 #include "reports/report_table.h"
 
-namespace hires::evaluation {
+namespace hires::lab {
 namespace {
 
 using nlohmann::ordered_json;
@@ -58,7 +58,7 @@ std::string CsvField(const ordered_json& value) {
 ordered_json IntervalsToJson(const std::vector<NamedInterval>& intervals) {
   ordered_json json = ordered_json::object();
   for (const auto& [name, interval] : intervals) {
-    json[name] = IntervalJson(interval);
+    json[name] = reports::IntervalJson(interval);
   }
   return json;
 }
@@ -194,11 +194,11 @@ std::string ReportText(const ExperimentReport& report) {
   std::string text = HeadText(report);
   for (const TextTable& table : report.findings.tables) {
     if (table.rows.size() < 2) continue;
-    text += '\n' + table.title + '\n' + FormatTable(table.rows);
+    text += '\n' + table.title + '\n' + reports::FormatTable(table.rows);
   }
   if (!report.checks.empty()) {
     const TextTable checks = ChecksTable(report);
-    text += '\n' + checks.title + '\n' + FormatTable(checks.rows);
+    text += '\n' + checks.title + '\n' + reports::FormatTable(checks.rows);
   }
   return text;
 }
@@ -220,13 +220,13 @@ std::string ReportCsv(const ExperimentReport& report) {
 ordered_json ToJson(const ExperimentReport& report) {
   ordered_json measures = ordered_json::object(), checks = ordered_json::array();
   for (const Measure& measure : report.findings.measures) {
-    measures[measure.name] = NumberOrNull(measure.value);
+    measures[measure.name] = reports::NumberOrNull(measure.value);
   }
   for (const CheckedExpectation& check : report.checks) {
     checks.push_back({{"expected", ToString(check.expectation)},
                       {"measure", check.expectation.measure},
-                      {"bound", NumberOrNull(check.expectation.bound)},
-                      {"found", NumberOrNull(check.value)},
+                      {"bound", reports::NumberOrNull(check.expectation.bound)},
+                      {"found", reports::NumberOrNull(check.value)},
                       {"holds", check.holds}});
   }
   return {{"name", report.name},
@@ -259,4 +259,4 @@ std::string JunitXml(const ExperimentReport& report) {
   return std::string(xml.CStr()) + '\n';
 }
 
-}  // namespace hires::evaluation
+}  // namespace hires::lab

@@ -8,7 +8,7 @@
 #include "hires/base/param_reader.h"
 #include "reports/statistics.h"
 
-namespace hires::evaluation {
+namespace hires::lab {
 
 /// A number that an experiment found, by name: "reached_share".
 struct Measure {
@@ -19,7 +19,7 @@ struct Measure {
 /// A number with its 95 % interval, by name. Where it is a measure, too, both have one name.
 struct NamedInterval {
   std::string name;
-  Interval interval;
+  reports::Interval interval;
 };
 
 /// What must hold about a measure for the experiment to count as passed. A measure that is no
@@ -91,4 +91,4 @@ std::string JunitXml(const ExperimentReport& report);
 /// not finite become null.
 nlohmann::ordered_json ToJson(const ExperimentReport& report);
 
-}  // namespace hires::evaluation
+}  // namespace hires::lab

@@ -11,7 +11,7 @@
 #include "hires/simulation/self_localisation.h"
 #include "hires/world/occupancy_grid.h"
 
-namespace hires::evaluation {
+namespace hires::lab {
 namespace {
 
 using imagination::ImaginationSetup;
@@ -154,4 +154,4 @@ Uncertainty OneTruth(Uncertainty uncertainty, const base::Rng& rng) {
   return uncertainty;
 }
 
-}  // namespace hires::evaluation
+}  // namespace hires::lab

@@ -11,7 +11,7 @@
 #include "hires/imagination/rollout.h"
 #include "hires/imagination/uncertainty.h"
 
-namespace hires::evaluation {
+namespace hires::lab {
 
 /// Where an experiment plays: everything loaded, its goals being areas to drive to.
 struct Stage {
@@ -38,4 +38,4 @@ imagination::Uncertainty Without(imagination::Uncertainty uncertainty,
 /// One truth out of many: every quantity is fixed at a value that is drawn.
 imagination::Uncertainty OneTruth(imagination::Uncertainty uncertainty, const base::Rng& rng);
 
-}  // namespace hires::evaluation
+}  // namespace hires::lab

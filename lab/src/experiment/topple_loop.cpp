@@ -10,7 +10,7 @@
 #include "hires/base/text.h"
 #include "hires/imagination/evidence.h"
 
-namespace hires::evaluation {
+namespace hires::lab {
 namespace {
 
 using imagination::OutcomeCounts;
@@ -63,12 +63,12 @@ TextTable CountsTable(const ToppleLoopConfig& loop, const std::vector<Pair>& pai
 }
 
 /// "0.02931 (0.02609 .. 0.03284)"
-std::string EstimateText(const Interval& interval, int decimals) {
+std::string EstimateText(const reports::Interval& interval, int decimals) {
   return fmt::format("{0:.{3}f} ({1:.{3}f} .. {2:.{3}f})", interval.estimate, interval.lower,
                      interval.upper, decimals);
 }
 
-const Interval& IntervalNamed(const std::string& name,
+const reports::Interval& IntervalNamed(const std::string& name,
                               const std::vector<NamedInterval>& intervals) {
   const auto found =
       std::find_if(intervals.begin(), intervals.end(),
@@ -231,13 +231,13 @@ std::vector<Leg> PlayOneChain(const ToppleLoopConfig& loop, Chain chain, const b
 /// What the load of one chain went through, leg by leg.
 void TellExperiences(const std::string& motion_set, std::size_t number, std::vector<Leg>* legs,
                      const imagination::RolloutParams& params, const OnExperience& on_experience) {
-  ToppleMonitor monitor(params);
+  reports::ToppleMonitor monitor(params);
   for (Leg& leg : *legs) {
     knowledge::ExperienceBatch batch{fmt::format("{}/{}", motion_set, number),
                                      fmt::format("move_base_param({}, {})", leg.to, motion_set),
                                      {}};
     monitor.Begin();
-    for (const ToppleSample& sample : leg.samples) {
+    for (const reports::ToppleSample& sample : leg.samples) {
       if (const auto part = monitor.Add(sample)) batch.parts.push_back(*part);
     }
     leg.samples = {};
@@ -295,4 +295,4 @@ Findings SumUpToppleLoop(const ToppleLoopConfig& loop, std::uint64_t seed,
   return findings;
 }
 
-}  // namespace hires::evaluation
+}  // namespace hires::lab

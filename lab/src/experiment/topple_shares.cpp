@@ -4,28 +4,28 @@
 
 #include "reports/statistics.h"
 
-namespace hires::evaluation {
+namespace hires::lab {
 namespace {
 
 using imagination::OutcomeCounts;
 
-Interval IntervalOfShare(const ResampledCounts& set, const CountedEvent& event,
+reports::Interval IntervalOfShare(const ResampledCounts& set, const CountedEvent& event,
                          const CountRate& rate) {
   std::vector<double> shares;
   for (const LoopCounts& resample : set.resamples) {
     shares.push_back(ShareOf(resample.*rate.counts, event));
   }
-  return PercentileInterval(ShareOf(set.all.*rate.counts, event), std::move(shares));
+  return reports::PercentileInterval(ShareOf(set.all.*rate.counts, event), std::move(shares));
 }
 
-Interval IntervalOfRatio(const ResampledCounts& first, const ResampledCounts& second,
+reports::Interval IntervalOfRatio(const ResampledCounts& first, const ResampledCounts& second,
                          const CountedEvent& event, const CountRate& rate) {
   std::vector<double> ratios;
   for (std::size_t i = 0; i < first.resamples.size(); ++i) {
     ratios.push_back(
         RatioOf(first.resamples[i].*rate.counts, second.resamples[i].*rate.counts, event));
   }
-  return PercentileInterval(RatioOf(first.all.*rate.counts, second.all.*rate.counts, event),
+  return reports::PercentileInterval(RatioOf(first.all.*rate.counts, second.all.*rate.counts, event),
                             std::move(ratios));
 }
 
@@ -95,4 +95,4 @@ std::vector<NamedInterval> LoopIntervals(const ToppleLoopConfig& loop,
   return intervals;
 }
 
-}  // namespace hires::evaluation
+}  // namespace hires::lab

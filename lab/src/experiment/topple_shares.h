@@ -11,7 +11,7 @@
 #include "hires/imagination/rollout_result.h"
 
 // Shares of the three kinds of samples in a `topple_loop`, and how sure they are.
-namespace hires::evaluation {
+namespace hires::lab {
 
 /// The same samples, counted at both rates.
 struct LoopCounts {
@@ -77,4 +77,4 @@ ResampledCounts Resample(const std::vector<LoopCounts>& parts, base::Rng rng);
 std::vector<NamedInterval> LoopIntervals(const ToppleLoopConfig& loop,
                                          const std::vector<ResampledCounts>& sets);
 
-}  // namespace hires::evaluation
+}  // namespace hires::lab

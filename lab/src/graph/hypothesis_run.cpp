@@ -22,16 +22,16 @@ namespace hires_ros {
 namespace {
 
 namespace evaluation = hires::evaluation;
-using evaluation::HypothesisOrder;
-using evaluation::HypothesisRun;
+using lab::HypothesisOrder;
+using lab::HypothesisRun;
 using hires::base::ConfigError;
 
-GraphLimits LimitsOf(const evaluation::HypothesisGoal& goal) {
+GraphLimits LimitsOf(const lab::HypothesisGoal& goal) {
   return {goal.start_limit, goal.wall_limit, goal.time_limit};
 }
 
 std::vector<std::string> LaunchArguments(const HypothesisOrder& order,
-                                         const evaluation::Scenario& scenario) {
+                                         const sim_robot::Scenario& scenario) {
   return {"scenario:=" + order.scenario,
           "knowledge:=" + hires::base::Join(scenario.knowledge, " "),
           fmt::format("imagination:={}", order.imagines),
@@ -41,8 +41,8 @@ std::vector<std::string> LaunchArguments(const HypothesisOrder& order,
           "store:=" + order.folder + "/blackboard.db"};
 }
 
-void Watch(const HypothesisOrder& order, const evaluation::Scenario& scenario,
-           const std::vector<evaluation::WantedPlace>& places, RunLimits* limits,
+void Watch(const HypothesisOrder& order, const sim_robot::Scenario& scenario,
+           const std::vector<lab::WantedPlace>& places, RunLimits* limits,
            HypothesisRun* run) {
   AwaitMaster(limits);
   ros::NodeHandle nh;
@@ -52,16 +52,16 @@ void Watch(const HypothesisOrder& order, const evaluation::Scenario& scenario,
   AwaitTruth(witness, limits);
   const auto report = AchieveRemotely({scenario.task, "", order.goal.start_limit}, {},
                                       [&] { return limits->Broken(); });
-  evaluation::WriteJson(ToJson(report), order.folder + "/result.json");
-  evaluation::CountReport(report, run);
+  reports::WriteJson(ToJson(report), order.folder + "/result.json");
+  lab::CountReport(report, run);
   AwaitRest(limits);
-  evaluation::Judge(order.goal, places, witness.Truth(), run);
+  lab::Judge(order.goal, places, witness.Truth(), run);
   run->is_complete = limits->outcome().empty();
 }
 
 /// Never throws for what a run may run into.
-HypothesisRun Play(const HypothesisOrder& order, const evaluation::Scenario& scenario,
-                   const std::vector<evaluation::WantedPlace>& places, RunLimits* limits) {
+HypothesisRun Play(const HypothesisOrder& order, const sim_robot::Scenario& scenario,
+                   const std::vector<lab::WantedPlace>& places, RunLimits* limits) {
   HypothesisRun run;
   try {
     Watch(order, scenario, places, limits, &run);
@@ -82,10 +82,10 @@ HypothesisRun Play(const HypothesisOrder& order, const evaluation::Scenario& sce
 
 HypothesisRun PlayInSystem(const HypothesisOrder& order, int port,
                            const std::string& package_folder, hires::base::StopSignals* stop) {
-  const auto scenario = evaluation::ReadScenario(
+  const auto scenario = sim_robot::ReadScenario(
       fmt::format("{}/config/scenarios/{}.yaml", package_folder, order.scenario));
   const auto scene = hires::imagination::ReadSetupConfig(package_folder + "/config/scene.yaml");
-  const auto places = evaluation::PlacesOf(order.goal, hires::world::LoadWorld(scene.world),
+  const auto places = lab::PlacesOf(order.goal, hires::world::LoadWorld(scene.world),
                                            scene.manipulation.place.area_edge);
   EnterGraph(order.folder, port);
   hires::base::ChildProcess system(
@@ -104,13 +104,13 @@ int RunHypothesisProcess(const std::vector<std::string>& words, const std::strin
     throw ConfigError(
         fmt::format("{}: wanted ORDER.json RECORD.json FIRST_PORT; `hires_lab experiment "
                     "hypothesis` starts it",
-                    hires::cli::kHypothesisRunVerb));
+                    hires::lab::kHypothesisRunVerb));
   }
   hires::base::StopSignals stop;
   hires::base::StopWithParent();
   hires::base::AdoptOrphans();
   const HypothesisOrder order =
-      hires::cli::ParseHypothesisOrder(hires::base::ReadTextFile(words[0]), words[0]);
+      hires::lab::ParseHypothesisOrder(hires::base::ReadTextFile(words[0]), words[0]);
   HypothesisRun run;
   try {
     run = PlayInSystem(order, PortOf(words[2]), package_folder, &stop);
@@ -119,7 +119,7 @@ int RunHypothesisProcess(const std::vector<std::string>& words, const std::strin
     throw;
   }
   hires::base::KillDescendants();
-  evaluation::WriteJson(ToJson(run), words[1]);
+  reports::WriteJson(ToJson(run), words[1]);
   return EXIT_SUCCESS;
 }
 

@@ -22,7 +22,7 @@ namespace evaluation = hires::evaluation;
 using hires::base::ConfigError;
 using nlohmann::ordered_json;
 
-std::vector<std::string> ArgumentsOf(const hires::cli::GraphOrder& order) {
+std::vector<std::string> ArgumentsOf(const hires::lab::GraphOrder& order) {
   return {"scenario:=" + order.run.files.scenario,
           "world:=" + order.run.files.world,
           "knowledge:=" + hires::base::Join(order.run.files.knowledge, " "),
@@ -43,13 +43,13 @@ ordered_json TruthJson(const hires::simulation::RunTruth& truth, double seconds)
 class Progress {
  public:
   /// @return whether it is the first.
-  bool Tell(const evaluation::AchieveStatus& status) {
+  bool Tell(const loop::AchieveStatus& status) {
     std::string text;
     for (const auto& step : status.steps) {
-      text += fmt::format(" {}:{}", step.action.name, evaluation::ToString(step.phase));
+      text += fmt::format(" {}:{}", step.action.name, loop::ToString(step.phase));
     }
     for (const auto& each : status.imaginations) {
-      text += fmt::format(" {}~{}", each.action.name, evaluation::ToString(each.outcome));
+      text += fmt::format(" {}~{}", each.action.name, loop::ToString(each.outcome));
     }
     const bool is_first = last_.empty();
     if (text != last_) std::cout << fmt::format("{:.1f} s:{}", status.now, text) << std::endl;
@@ -61,7 +61,7 @@ class Progress {
   std::string last_;
 };
 
-ordered_json Play(const hires::cli::GraphOrder& order, RunLimits* limits) {
+ordered_json Play(const hires::lab::GraphOrder& order, RunLimits* limits) {
   AwaitMaster(limits);
   ros::NodeHandle nh;
   Witness witness(&nh);
@@ -69,7 +69,7 @@ ordered_json Play(const hires::cli::GraphOrder& order, RunLimits* limits) {
   spinner.start();
   AwaitTruth(witness, limits);
   Progress progress;
-  const auto on_status = [&](const evaluation::AchieveStatus& status) {
+  const auto on_status = [&](const loop::AchieveStatus& status) {
     if (progress.Tell(status)) limits->WatchProcesses();
   };
   const auto report = AchieveRemotely({order.run.task, "", limits->start_limit()}, on_status,
@@ -78,14 +78,14 @@ ordered_json Play(const hires::cli::GraphOrder& order, RunLimits* limits) {
   ordered_json json = ToJson(report);
   json["in_truth"] = TruthJson(witness.Truth(), ros::Time::now().toSec());
   if (limits->is_time_over()) {  // what ended the task was this process
-    json["outcome"] = evaluation::ToString(evaluation::AchieveOutcome::kFailed);
+    json["outcome"] = loop::ToString(loop::AchieveOutcome::kFailed);
     json["reason"] = limits->reason();
   }
   return json;
 }
 
 /// @throws base::ConfigError where the graph broke down, with how.
-ordered_json PlayInGraph(const hires::cli::GraphOrder& order, int port,
+ordered_json PlayInGraph(const hires::lab::GraphOrder& order, int port,
                          const std::string& package_folder) {
   hires::base::StopSignals stop;
   EnterGraph(order.run.folder, port);
@@ -118,11 +118,11 @@ int RunScenarioProcess(const std::vector<std::string>& words, const std::string&
   if (words.size() != 3) {
     throw ConfigError(fmt::format(
         "{}: wanted ORDER.json RESULT.json FIRST_PORT; `hires_lab scenarios --graph` starts it",
-        hires::cli::kScenarioRunVerb));
+        hires::lab::kScenarioRunVerb));
   }
   hires::base::StopWithParent();
   hires::base::AdoptOrphans();
-  const auto order = hires::cli::ParseGraphOrder(hires::base::ReadTextFile(words[0]), words[0]);
+  const auto order = hires::lab::ParseGraphOrder(hires::base::ReadTextFile(words[0]), words[0]);
   ordered_json result;
   try {
     result = PlayInGraph(order, PortOf(words[2]), package_folder);
@@ -131,7 +131,7 @@ int RunScenarioProcess(const std::vector<std::string>& words, const std::string&
     throw;
   }
   hires::base::KillDescendants();
-  evaluation::WriteJson(result, words[1]);
+  reports::WriteJson(result, words[1]);
   return EXIT_SUCCESS;
 }
 

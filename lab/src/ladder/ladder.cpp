@@ -10,7 +10,7 @@
 #include "hires/base/check.h"
 #include "hires/base/error.h"
 
-namespace hires::evaluation {
+namespace hires::lab {
 namespace {
 
 using ladder::Measured;
@@ -47,7 +47,7 @@ LadderPair PairOf(int threads, const RungPlan& plan, const std::vector<Measured>
 }
 
 LadderOwn OwnOf(std::string id, std::string title, std::string unit, std::vector<double> values) {
-  const Interval mean = MeanInterval(values);
+  const reports::Interval mean = reports::MeanInterval(values);
   return {std::move(id), std::move(title), std::move(unit), std::move(values), mean};
 }
 
@@ -160,4 +160,4 @@ std::optional<LadderReport> ClimbLadder(const LadderOrder& order, const base::Cr
   return Climber(order, crew).Climb();
 }
 
-}  // namespace hires::evaluation
+}  // namespace hires::lab

@@ -12,7 +12,7 @@
 #include "lab/src/experiment/experiment.h"
 #include "reports/statistics.h"
 
-namespace hires::evaluation {
+namespace hires::lab {
 
 /// Times that a measurement reads [s]; from any start, never backwards.
 struct LadderClocks {
@@ -45,7 +45,7 @@ struct LadderPair {
   int threads{1};  ///< on which each way was played at once
   int rounds{0};   ///< pieces of work of each repeat, the same for both ways
   LadderSide before, after;
-  Interval ratio;  ///< after / before: t interval of the paired logarithms
+  reports::Interval ratio;  ///< after / before: t interval of the paired logarithms
 };
 
 /// A step of the dissertation. Its unit is the real-time factor, simulated / wall seconds
@@ -66,7 +66,7 @@ struct LadderRung {
 struct LadderOwn {
   std::string id, title, unit;
   std::vector<double> values;
-  Interval mean;  ///< t interval over repeats
+  reports::Interval mean;  ///< t interval over repeats
 };
 
 struct LadderReport {
@@ -87,4 +87,4 @@ std::string ReportText(const LadderReport& report);
 /// {"schema": "hires/ladder", "version": 1, ...}; the order of `rungs` and `own` is fixed.
 nlohmann::ordered_json ToJson(const LadderReport& report);
 
-}  // namespace hires::evaluation
+}  // namespace hires::lab

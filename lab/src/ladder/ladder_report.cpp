@@ -7,7 +7,7 @@
 #include "lab/src/ladder/ladder.h"
 #include "reports/report_table.h"
 
-namespace hires::evaluation {
+namespace hires::lab {
 namespace {
 
 using nlohmann::ordered_json;
@@ -16,7 +16,7 @@ ordered_json SideJson(const LadderSide& side) {
   return {{"what", side.what},
           {"facts", side.facts},
           {"values", side.values},
-          {"mean", Mean(side.values)}};
+          {"mean", reports::Mean(side.values)}};
 }
 
 ordered_json PairJson(const LadderPair& pair) {
@@ -24,7 +24,7 @@ ordered_json PairJson(const LadderPair& pair) {
           {"rounds", pair.rounds},
           {"before", SideJson(pair.before)},
           {"after", SideJson(pair.after)},
-          {"ratio", IntervalJson(pair.ratio)}};
+          {"ratio", reports::IntervalJson(pair.ratio)}};
 }
 
 ordered_json RungJson(const LadderRung& rung) {
@@ -32,12 +32,12 @@ ordered_json RungJson(const LadderRung& rung) {
                     {"title", rung.title},
                     {"unit", "real-time factor"},
                     {"published",
-                     {{"before", NumberOrNull(rung.published_before)},
-                      {"after", NumberOrNull(rung.published_after)},
+                     {{"before", reports::NumberOrNull(rung.published_before)},
+                      {"after", reports::NumberOrNull(rung.published_after)},
                       {"text", rung.published}}}};
   json.update(PairJson(rung.one_core));
   json["all_cores"] = rung.all_cores ? PairJson(*rung.all_cores) : ordered_json(nullptr);
-  json["apart"] = NumberOrNull(rung.apart);
+  json["apart"] = reports::NumberOrNull(rung.apart);
   json["note"] = rung.note;
   return json;
 }
@@ -48,8 +48,8 @@ ordered_json OwnJson(const LadderOwn& own) {
           {"unit", own.unit},
           {"values", own.values},
           {"mean", own.mean.estimate},
-          {"lower", NumberOrNull(own.mean.lower)},
-          {"upper", NumberOrNull(own.mean.upper)}};
+          {"lower", reports::NumberOrNull(own.mean.lower)},
+          {"upper", reports::NumberOrNull(own.mean.upper)}};
 }
 
 /// Three digits that count, whatever the size.
@@ -57,14 +57,14 @@ std::string Short(double value) {
   return std::abs(value) >= 100.0 ? fmt::format("{:.0f}", value) : fmt::format("{:.3g}", value);
 }
 
-std::string IntervalText(const Interval& interval) {
+std::string IntervalText(const reports::Interval& interval) {
   return fmt::format("{} ({} .. {})", Short(interval.estimate), Short(interval.lower),
                      Short(interval.upper));
 }
 
 std::vector<std::string> Row(const std::string& title, const LadderPair& pair,
                              const std::string& published) {
-  return {title, Short(Mean(pair.before.values)), Short(Mean(pair.after.values)),
+  return {title, Short(reports::Mean(pair.before.values)), Short(reports::Mean(pair.after.values)),
           IntervalText(pair.ratio), published};
 }
 
@@ -85,14 +85,14 @@ std::string RungTable(const LadderReport& report) {
       rows.push_back(
           Row(fmt::format("  ... on {} threads", rung.all_cores->threads), *rung.all_cores, ""));
   }
-  return FormatTable(rows);
+  return reports::FormatTable(rows);
 }
 
 std::string OwnTable(const LadderReport& report) {
   std::vector<std::vector<std::string>> rows{{"one step to a ranked answer", "mean", "unit"}};
   for (const LadderOwn& own : report.own)
     rows.push_back({own.title, IntervalText(own.mean), own.unit});
-  return FormatTable(rows);
+  return reports::FormatTable(rows);
 }
 
 }  // namespace
@@ -125,4 +125,4 @@ ordered_json ToJson(const LadderReport& report) {
   return json;
 }
 
-}  // namespace hires::evaluation
+}  // namespace hires::lab

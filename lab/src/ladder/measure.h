@@ -9,7 +9,7 @@
 #include "lab/src/ladder/ladder.h"
 #include "hires/world/world.h"
 
-namespace hires::evaluation::ladder {
+namespace hires::lab::ladder {
 
 /// Plays pieces of work one after the other, on one thread at a time.
 struct Player {
@@ -64,9 +64,9 @@ std::optional<std::vector<Measured>> MeasureByTurns(const std::vector<const Way*
 
 /// after / before with the t interval of the paired logarithms.
 /// @pre equally many, all positive.
-Interval RatioOf(const std::vector<double>& before, const std::vector<double>& after);
+reports::Interval RatioOf(const std::vector<double>& before, const std::vector<double>& after);
 
 /// [m] the largest distance between objects of one name.
 double Apart(const world::WorldState& a, const world::WorldState& b);
 
-}  // namespace hires::evaluation::ladder
+}  // namespace hires::lab::ladder

@@ -6,7 +6,7 @@
 
 #include "hires/geometry/angles.h"
 
-namespace hires::evaluation::ladder {
+namespace hires::lab::ladder {
 namespace {
 
 using Eigen::Vector3d;
@@ -213,4 +213,4 @@ int NumTriangles(const std::vector<Collision>& collisions) {
   return static_cast<int>(count);
 }
 
-}  // namespace hires::evaluation::ladder
+}  // namespace hires::lab::ladder

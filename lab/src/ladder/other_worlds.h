@@ -6,7 +6,7 @@
 #include "hires/imagination/imagination_setup.h"
 #include "hires/simulation/scene.h"
 
-namespace hires::evaluation::ladder {
+namespace hires::lab::ladder {
 
 /// The surface of a shape as triangles with edges of at most about `edge` [m]. Round shapes get
 /// corners on the shape itself; a mesh is given back as it is.
@@ -29,4 +29,4 @@ std::shared_ptr<const simulation::Scene> SceneIn(world::World world, const simul
 
 int NumTriangles(const std::vector<geometry::Collision>& collisions);
 
-}  // namespace hires::evaluation::ladder
+}  // namespace hires::lab::ladder

@@ -9,7 +9,7 @@
 #include "hires/geometry/angles.h"
 #include "hires/imagination/local_imagination.h"
 
-namespace hires::evaluation::ladder {
+namespace hires::lab::ladder {
 namespace {
 
 using imagination::ImaginationSetup;
@@ -139,4 +139,4 @@ OwnPlan RankedAnswer(const Places& places, int num_rollouts, int threads,
   return plan;
 }
 
-}  // namespace hires::evaluation::ladder
+}  // namespace hires::lab::ladder

@@ -6,7 +6,7 @@
 
 #include "lab/src/ladder/places.h"
 
-namespace hires::evaluation::ladder {
+namespace hires::lab::ladder {
 
 /// A step of ours, ready to be measured.
 struct OwnPlan {
@@ -23,4 +23,4 @@ std::vector<OwnPlan> RolloutSteps(const Places& places);
 OwnPlan RankedAnswer(const Places& places, int num_rollouts, int threads,
                      const std::function<bool()>& cancelled);
 
-}  // namespace hires::evaluation::ladder
+}  // namespace hires::lab::ladder

@@ -5,7 +5,7 @@
 
 #include "hires/base/check.h"
 
-namespace hires::evaluation::ladder {
+namespace hires::lab::ladder {
 namespace {
 
 using imagination::ImaginationSetup;
@@ -108,4 +108,4 @@ imagination::StartState LaidTable(const ImaginationSetup& setup) {
   return start;
 }
 
-}  // namespace hires::evaluation::ladder
+}  // namespace hires::lab::ladder

@@ -7,7 +7,7 @@
 #include "hires/imagination/imagination_setup.h"
 #include "hires/simulation/robot_simulator.h"
 
-namespace hires::evaluation::ladder {
+namespace hires::lab::ladder {
 
 /// The restaurant as rollouts have it, loaded once and shared by all rungs.
 class Places {
@@ -59,4 +59,4 @@ Way DriveWay(const imagination::ImaginationSetup& setup, std::uint64_t seed, std
 /// The robot of the dissertation's "idle world": mugs and the pepper mill on counter and tables.
 imagination::StartState LaidTable(const imagination::ImaginationSetup& setup);
 
-}  // namespace hires::evaluation::ladder
+}  // namespace hires::lab::ladder

@@ -9,7 +9,7 @@
 #include "sim_robot/sim_robot_sensors.h"
 #include "hires/simulation/self_localisation.h"
 
-namespace hires::evaluation::ladder {
+namespace hires::lab::ladder {
 namespace {
 
 using geometry::Twist2;
@@ -72,9 +72,9 @@ class Watching {
  public:
   Watching(const Places& places, bool draws)
       : world_(places.drawn(), Start(places), places.seed()), draws_(draws) {
-    const SimCameraParams params =
-        ReadSimSensorParams(base::ParamReader::FromFile(places.File("sim_robot.yaml"))).cameras;
-    cameras_ = std::make_unique<SimRobotCameras>(params, base::Rng(places.seed()), world_.scene());
+    const sim_robot::SimCameraParams params =
+        sim_robot::ReadSimSensorParams(base::ParamReader::FromFile(places.File("sim_robot.yaml"))).cameras;
+    cameras_ = std::make_unique<sim_robot::SimRobotCameras>(params, base::Rng(places.seed()), world_.scene());
   }
 
   /// A tenth of a second, three pictures.
@@ -95,8 +95,8 @@ class Watching {
     return start;
   }
 
-  SimRobotWorld world_;
-  std::unique_ptr<SimRobotCameras> cameras_;
+  sim_robot::SimRobotWorld world_;
+  std::unique_ptr<sim_robot::SimRobotCameras> cameras_;
   bool draws_;
 };
 
@@ -210,7 +210,7 @@ RungPlan OwnMap(const Places& places) {
 Way BareWay(const Places& places) {
   return {"the robot simulator of the same scenario alone, nothing commanded", {}, [&places] {
             constexpr long kRound = 1000;  // [ms]
-            const auto world = std::make_shared<SimRobotWorld>(
+            const auto world = std::make_shared<sim_robot::SimRobotWorld>(
                 places.drawn(), StartOf(places.drawn(), places.Scenario("topple"), ""),
                 places.seed());
             return Player{[world](int) {
@@ -265,4 +265,4 @@ std::vector<RungPlan> DissertationRungs(
   return rungs;
 }
 
-}  // namespace hires::evaluation::ladder
+}  // namespace hires::lab::ladder

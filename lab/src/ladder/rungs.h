@@ -7,7 +7,7 @@
 
 #include "lab/src/ladder/places.h"
 
-namespace hires::evaluation::ladder {
+namespace hires::lab::ladder {
 
 /// A step of the dissertation, ready to be measured. Its report is filled but for the numbers.
 struct RungPlan {
@@ -24,4 +24,4 @@ std::vector<RungPlan> DissertationRungs(
     const Places& places,
     const std::function<std::optional<double>(std::uint64_t seed)>& play_task);
 
-}  // namespace hires::evaluation::ladder
+}  // namespace hires::lab::ladder

@@ -4,7 +4,7 @@
 
 #include "hires/geometry/pose.h"
 
-namespace hires::evaluation {
+namespace hires::lab {
 
 /// Where a robot is that finds its place by itself, and where it takes itself to be, at one moment.
 struct PlaceMoment {
@@ -25,4 +25,4 @@ struct PlaceMoment {
 /// One drive, moment by moment.
 using PlaceTrail = std::vector<PlaceMoment>;
 
-}  // namespace hires::evaluation
+}  // namespace hires::lab

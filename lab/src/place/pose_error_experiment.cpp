@@ -4,7 +4,7 @@
 #include "hires/base/error.h"
 #include "lab/src/place/pose_error_fit.h"
 
-namespace hires::evaluation {
+namespace hires::lab {
 namespace {
 
 constexpr std::uint64_t kPlayed = 77;  // stream of the held-out seeds
@@ -92,4 +92,4 @@ std::optional<PoseErrorReport> FitPoseError(const PoseErrorOrder& order, const b
   return report;
 }
 
-}  // namespace hires::evaluation
+}  // namespace hires::lab

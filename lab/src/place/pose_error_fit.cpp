@@ -8,7 +8,7 @@
 #include "hires/geometry/angles.h"
 #include "hires/imagination/evidence.h"
 
-namespace hires::evaluation {
+namespace hires::lab {
 namespace {
 
 using geometry::Pose2;
@@ -197,4 +197,4 @@ PoseErrorFigures FiguresOf(const std::vector<PlaceTrail>& trails) {
           after_4m.value()};
 }
 
-}  // namespace hires::evaluation
+}  // namespace hires::lab

@@ -11,7 +11,7 @@
 #include "lab/src/place/place_moment.h"
 #include "hires/simulation/pose_error.h"
 
-namespace hires::evaluation {
+namespace hires::lab {
 
 /// How the place errs at which a robot takes itself to be that finds it by itself, from drives of
 /// simulated robots, to be played quickly (simulation::PoseErrorWalk).
@@ -65,4 +65,4 @@ nlohmann::ordered_json ToJson(const PoseErrorReport& report);
 /// A file like config/localisation_error.yaml, with a head that says where it comes from.
 std::string ToYaml(const PoseErrorReport& report);
 
-}  // namespace hires::evaluation
+}  // namespace hires::lab

@@ -5,7 +5,7 @@
 #include "lab/src/place/pose_error_fit.h"
 #include "reports/report_table.h"
 
-namespace hires::evaluation {
+namespace hires::lab {
 namespace {
 
 using nlohmann::ordered_json;
@@ -30,7 +30,7 @@ std::vector<std::string> Row(const char* name, const PoseErrorFigures& of) {
 }
 
 std::string ChecksText(const PoseErrorReport& report) {
-  return FormatTable({{"position errs by", "median", "95 %", "largest", "rms", "heading, rms",
+  return reports::FormatTable({{"position errs by", "median", "95 %", "largest", "rms", "heading, rms",
                        "a correction", "alike after 1 m", "after 4 m"},
                       Row("the filter", report.found),
                       Row("the fit", report.played)});
@@ -85,4 +85,4 @@ std::string ToYaml(const PoseErrorReport& report) {
          simulation::ToYaml(report.fit);
 }
 
-}  // namespace hires::evaluation
+}  // namespace hires::lab

@@ -7,7 +7,7 @@
 #include "lab/src/recognition/regression.h"
 #include "hires/base/error.h"
 
-namespace hires::evaluation {
+namespace hires::lab {
 namespace {
 
 using Eigen::VectorXd;
@@ -178,4 +178,4 @@ DetectorErrors FitDetector(const std::vector<TwoLooks>& things, const Recognitio
   return errors;
 }
 
-}  // namespace hires::evaluation
+}  // namespace hires::lab

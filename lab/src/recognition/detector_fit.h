@@ -13,7 +13,7 @@
 #include "lab/src/trial/recognition_score.h"
 #include "hires/robot/robot_profile.h"
 
-namespace hires::evaluation {
+namespace hires::lab {
 
 /// How a recogniser errs on random tables (perception::RandomTables): farther away, more hidden and
 /// more crowded than those of RecognitionOrder, and each looked at twice.
@@ -76,4 +76,4 @@ nlohmann::ordered_json ToJson(const DetectorFitReport& report);
 /// A file like config/detector.yaml, with a head that says where it comes from.
 std::string ToYaml(const DetectorFitReport& report);
 
-}  // namespace hires::evaluation
+}  // namespace hires::lab

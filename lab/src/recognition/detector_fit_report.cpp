@@ -7,14 +7,14 @@
 #include "lab/src/recognition/detector_fit.h"
 #include "reports/report_table.h"
 
-namespace hires::evaluation {
+namespace hires::lab {
 namespace {
 
 using nlohmann::ordered_json;
 using perception::DetectorErrors;
 using perception::Regression;
 
-std::string Percent(double number, int of) { return NumberText(100.0 * number / of, 1); }
+std::string Percent(double number, int of) { return reports::NumberText(100.0 * number / of, 1); }
 
 std::string WeightsText(const DetectorErrors& errors) {
   const std::pair<const char*, const Regression*> all[]{{"found (log odds)", &errors.found},
@@ -30,7 +30,7 @@ std::string WeightsText(const DetectorErrors& errors) {
       rows.back().push_back(fmt::format("{:+.2f} ({:.2f})", one->weight[i], one->error[i]));
     rows.back().push_back(fmt::format("{:.2f}", one->repeats));
   }
-  return FormatTable(rows);
+  return reports::FormatTable(rows);
 }
 
 std::string ChecksText(const std::vector<FitCheck>& checks) {
@@ -40,10 +40,10 @@ std::string ChecksText(const std::vector<FitCheck>& checks) {
   for (const FitCheck& one : checks) {
     rows.push_back({one.part, std::to_string(one.num_looks), Percent(one.num_found, one.num_looks),
                     Percent(one.found, one.num_looks), Percent(one.num_named, one.num_found),
-                    Percent(one.named, one.num_found), NumberText(1e3 * one.median_error, 2),
-                    NumberText(1e3 * one.expected, 2), NumberText(100.0 * one.beyond, 1)});
+                    Percent(one.named, one.num_found), reports::NumberText(1e3 * one.median_error, 2),
+                    reports::NumberText(1e3 * one.expected, 2), reports::NumberText(100.0 * one.beyond, 1)});
   }
-  return FormatTable(rows);
+  return reports::FormatTable(rows);
 }
 
 std::string SourceText(const DetectorFitReport& report) {
@@ -92,9 +92,9 @@ ordered_json ToJson(const DetectorFitReport& report) {
                       {"found_by_fit", one.found},
                       {"named", one.num_named},
                       {"named_by_fit", one.named},
-                      {"median_error", NumberOrNull(one.median_error)},
-                      {"median_error_by_fit", NumberOrNull(one.expected)},
-                      {"beyond_95", NumberOrNull(one.beyond)}});
+                      {"median_error", reports::NumberOrNull(one.median_error)},
+                      {"median_error_by_fit", reports::NumberOrNull(one.expected)},
+                      {"beyond_95", reports::NumberOrNull(one.beyond)}});
   }
   return {{"schema", "hires/detector_fit"},
           {"version", 1},
@@ -118,8 +118,8 @@ std::string ToYaml(const DetectorFitReport& report) {
         "#   {}: {} looks, found {} % (fit {}), named {} % (fit {}), median {} mm (fit {})\n",
         one.part, one.num_looks, Percent(one.num_found, one.num_looks),
         Percent(one.found, one.num_looks), Percent(one.num_named, one.num_found),
-        Percent(one.named, one.num_found), NumberText(1e3 * one.median_error, 2),
-        NumberText(1e3 * one.expected, 2));
+        Percent(one.named, one.num_found), reports::NumberText(1e3 * one.median_error, 2),
+        reports::NumberText(1e3 * one.expected, 2));
   }
   return fmt::format(
              "# How the head camera's recogniser errs. Written by `hires experiment detector`, not "
@@ -133,4 +133,4 @@ std::string ToYaml(const DetectorFitReport& report) {
          perception::ToYaml(report.errors);
 }
 
-}  // namespace hires::evaluation
+}  // namespace hires::lab

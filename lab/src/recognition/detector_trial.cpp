@@ -6,7 +6,7 @@
 #include "lab/src/recognition/regression.h"
 #include "base/parallel.h"
 
-namespace hires::evaluation {
+namespace hires::lab {
 namespace {
 
 using perception::DetectorErrors;
@@ -152,4 +152,4 @@ std::optional<DetectorFitReport> FitDetector(const DetectorFitOrder& order,
   return report;
 }
 
-}  // namespace hires::evaluation
+}  // namespace hires::lab

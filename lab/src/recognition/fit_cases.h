@@ -5,7 +5,7 @@
 
 #include "lab/src/recognition/detector_fit.h"
 
-namespace hires::evaluation {
+namespace hires::lab {
 
 using LookTest = std::function<bool(const perception::ThingVerdict&)>;
 
@@ -26,4 +26,4 @@ bool IsPlaced(const perception::ThingVerdict& look);
 
 double ShareOf(double log_odds);  ///< 0 .. 1
 
-}  // namespace hires::evaluation
+}  // namespace hires::lab

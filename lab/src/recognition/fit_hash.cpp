@@ -5,7 +5,7 @@
 #include "hires/perception/depth_sensor.h"
 #include "hires/world/world.h"
 
-namespace hires::evaluation {
+namespace hires::lab {
 namespace {
 
 class FitHash {
@@ -95,4 +95,4 @@ std::string FitHashOf(const DetectorFitOrder& order) {
   return base::HexOf(hash.value());
 }
 
-}  // namespace hires::evaluation
+}  // namespace hires::lab

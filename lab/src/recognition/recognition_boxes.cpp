@@ -7,7 +7,7 @@
 #include "reports/known_number.h"
 #include "reports/report_table.h"
 
-namespace hires::evaluation {
+namespace hires::lab {
 namespace {
 
 using nlohmann::ordered_json;
@@ -44,7 +44,7 @@ std::vector<BoxPart> BoxPartsOf(const RecognitionReport& report) {
 }  // namespace
 
 std::string MillimetresText(double median, double share_95) {
-  return NumberText(1e3 * median, 1) + " / " + NumberText(1e3 * share_95, 1);
+  return reports::NumberText(1e3 * median, 1) + " / " + reports::NumberText(1e3 * share_95, 1);
 }
 
 std::string BoxesText(const RecognitionReport& report) {
@@ -56,13 +56,13 @@ std::string BoxesText(const RecognitionReport& report) {
     for (const ErrorQuantiles& error : {boxes.middle, boxes.longer, boxes.shorter, boxes.height})
       rows.back().push_back(MillimetresText(error.median, error.share_95));
   }
-  return FormatTable(rows);
+  return reports::FormatTable(rows);
 }
 
 ordered_json BoxesToJson(const RecognitionReport& report) {
   const auto quantiles = [](const ErrorQuantiles& error) {
-    return ordered_json{{"median", NumberOrNull(error.median)},
-                        {"error_95", NumberOrNull(error.share_95)}};
+    return ordered_json{{"median", reports::NumberOrNull(error.median)},
+                        {"error_95", reports::NumberOrNull(error.share_95)}};
   };
   ordered_json parts = ordered_json::array();
   for (const auto& [name, boxes] : BoxPartsOf(report)) {
@@ -76,4 +76,4 @@ ordered_json BoxesToJson(const RecognitionReport& report) {
   return parts;
 }
 
-}  // namespace hires::evaluation
+}  // namespace hires::lab

@@ -5,7 +5,7 @@
 
 #include "lab/src/recognition/recognition_experiment.h"
 
-namespace hires::evaluation {
+namespace hires::lab {
 
 /// "1.2 / 3.4" of two lengths [m]; what is not a number is "-".
 std::string MillimetresText(double median, double share_95);
@@ -15,4 +15,4 @@ std::string MillimetresText(double median, double share_95);
 std::string BoxesText(const RecognitionReport& report);
 nlohmann::ordered_json BoxesToJson(const RecognitionReport& report);  ///< [m]
 
-}  // namespace hires::evaluation
+}  // namespace hires::lab

@@ -9,7 +9,7 @@
 #include "base/parallel.h"
 #include "hires/base/resource_use.h"
 
-namespace hires::evaluation {
+namespace hires::lab {
 namespace {
 
 using perception::KnownModel;
@@ -119,4 +119,4 @@ std::optional<RecognitionReport> TryRecogniser(const RecognitionOrder& order,
   return report;
 }
 
-}  // namespace hires::evaluation
+}  // namespace hires::lab

@@ -13,7 +13,7 @@
 #include "lab/src/trial/recognition_score.h"
 #include "hires/robot/robot_profile.h"
 
-namespace hires::evaluation {
+namespace hires::lab {
 
 /// How well things on random tables are recognised (perception::RandomTables).
 struct RecognitionOrder {
@@ -59,4 +59,4 @@ bool MeetsGoals(const RecognitionReport& report);
 /// where all are met.
 std::string WhyGoalsAreNotMet(const RecognitionReport& report);
 
-}  // namespace hires::evaluation
+}  // namespace hires::lab

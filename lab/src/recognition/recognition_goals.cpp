@@ -8,7 +8,7 @@
 
 #include "hires/base/text.h"
 
-namespace hires::evaluation {
+namespace hires::lab {
 namespace {
 
 using perception::ErrorQuantiles;
@@ -22,18 +22,18 @@ constexpr double kBoxGoal = 0.01, kBoxGoal95 = 0.025;  // [m]
 
 RecognitionGoal ShareGoal(const char* name, const RecognitionReport& report,
                           const ThingShare& share, double bound) {
-  const std::vector<ClusterCounts> tables = CountsOf(report.score.things(), share);
-  if (SumOf(tables).num_all == 0) {
+  const std::vector<reports::ClusterCounts> tables = CountsOf(report.score.things(), share);
+  if (reports::SumOf(tables).num_all == 0) {
     return {name, std::numeric_limits<double>::quiet_NaN(), bound, false};
   }
-  const Interval interval = ClusteredShareInterval(tables);
+  const reports::Interval interval = reports::ClusteredShareInterval(tables);
   RecognitionGoal goal{name, interval.estimate, bound, false, interval};
   if (goal.verdict() == GoalVerdict::kUndecided)
     goal.enough_tables = TablesToDecide(tables, report.tables, bound);
   return goal;
 }
 
-bool HoldsBound(const Interval& interval, double bound) {
+bool HoldsBound(const reports::Interval& interval, double bound) {
   return interval.lower < bound && interval.upper >= bound;
 }
 
@@ -88,9 +88,9 @@ const ThingShare kOwnLabel{"own_label", IsKnown, HasOwnLabel};
 const ThingShare kUnknown{"unknown", IsUnknown, IsRight};
 const ThingShare kUnknownOfFound{"unknown_of_found", IsUnknownAndFound, IsRight};
 
-std::vector<ClusterCounts> CountsOf(const std::vector<ThingVerdict>& things,
+std::vector<reports::ClusterCounts> CountsOf(const std::vector<ThingVerdict>& things,
                                     const ThingShare& share) {
-  std::vector<ClusterCounts> tables;
+  std::vector<reports::ClusterCounts> tables;
   for (const ThingVerdict& thing : things) {
     if (!share.is_in(thing)) continue;
     if (thing.table >= static_cast<int>(tables.size())) tables.resize(thing.table + 1);
@@ -100,13 +100,13 @@ std::vector<ClusterCounts> CountsOf(const std::vector<ThingVerdict>& things,
   return tables;
 }
 
-std::optional<int> TablesToDecide(const std::vector<ClusterCounts>& tables, int num_tables,
+std::optional<int> TablesToDecide(const std::vector<reports::ClusterCounts>& tables, int num_tables,
                                   double bound) {
   constexpr int kMost = 100'000;
   const auto is_decided = [&](int times) {
-    std::vector<ClusterCounts> repeated;
+    std::vector<reports::ClusterCounts> repeated;
     for (int i = 0; i < times; ++i) repeated.insert(repeated.end(), tables.begin(), tables.end());
-    return !HoldsBound(ClusteredShareInterval(repeated), bound);
+    return !HoldsBound(reports::ClusteredShareInterval(repeated), bound);
   };
   const int most = kMost / num_tables;
   int too_few = 0, enough = 1;
@@ -174,4 +174,4 @@ std::string WhyGoalsAreNotMet(const RecognitionReport& report) {
   return text;
 }
 
-}  // namespace hires::evaluation
+}  // namespace hires::lab

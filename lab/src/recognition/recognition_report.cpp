@@ -13,7 +13,7 @@
 #include "hires/geometry/angles.h"
 #include "lab/src/trial/random_tables.h"
 
-namespace hires::evaluation {
+namespace hires::lab {
 namespace {
 
 using nlohmann::ordered_json;
@@ -77,23 +77,23 @@ std::string LeftOutRowsText(const std::vector<ThingVerdict>& things) {
 }
 
 std::string BareShare(const std::vector<ThingVerdict>& things, const ThingShare& share) {
-  const ClusterCounts sum = SumOf(CountsOf(things, share));
-  return NumberText(100.0 * sum.num_hits / sum.num_all, 1);
+  const reports::ClusterCounts sum = reports::SumOf(CountsOf(things, share));
+  return reports::NumberText(100.0 * sum.num_hits / sum.num_all, 1);
 }
 
 std::string ShareText(const std::vector<ThingVerdict>& things, const ThingShare& share) {
-  const std::vector<ClusterCounts> tables = CountsOf(things, share);
-  if (SumOf(tables).num_all == 0) return "-";
-  const Interval interval = ClusteredShareInterval(tables);
+  const std::vector<reports::ClusterCounts> tables = CountsOf(things, share);
+  if (reports::SumOf(tables).num_all == 0) return "-";
+  const reports::Interval interval = reports::ClusteredShareInterval(tables);
   return fmt::format("{:.1f} ({:.1f} .. {:.1f})", 100 * interval.estimate, 100 * interval.lower,
                      100 * interval.upper);
 }
 
 ordered_json ShareToJson(const std::vector<ThingVerdict>& things, const ThingShare& share) {
-  const std::vector<ClusterCounts> tables = CountsOf(things, share);
-  const ClusterCounts sum = SumOf(tables);
+  const std::vector<reports::ClusterCounts> tables = CountsOf(things, share);
+  const reports::ClusterCounts sum = reports::SumOf(tables);
   if (sum.num_all == 0) return {{"hits", 0}, {"all", 0}, {"lower", nullptr}, {"upper", nullptr}};
-  const Interval interval = ClusteredShareInterval(tables);
+  const reports::Interval interval = reports::ClusteredShareInterval(tables);
   return {{"hits", sum.num_hits},
           {"all", sum.num_all},
           {"lower", interval.lower},
@@ -112,7 +112,7 @@ std::vector<std::string> RowOf(const Part& part) {
           BareShare(part.things, kUnknownOfFound),
           MillimetresText(sums.median_error, sums.error_95),
           MillimetresText(sums.median_error_B, sums.error_B_95),
-          NumberText(sums.median_turn * 180.0 / geometry::kPi, 1)};
+          reports::NumberText(sums.median_turn * 180.0 / geometry::kPi, 1)};
 }
 
 using Confusions = std::map<std::pair<std::string, std::string>, int>;
@@ -149,7 +149,7 @@ std::string GoalText(const RecognitionGoal& goal) {
                     : "";
   return fmt::format("goal: {} {} {:.0f} {}: {}, {}\n", goal.name,
                      goal.is_length ? "at most" : "at least", scale * goal.bound, unit,
-                     NumberText(scale * goal.value, 1) + interval, ToString(goal.verdict()));
+                     reports::NumberText(scale * goal.value, 1) + interval, ToString(goal.verdict()));
 }
 
 ordered_json GoalsToJson(const RecognitionReport& report) {
@@ -157,7 +157,7 @@ ordered_json GoalsToJson(const RecognitionReport& report) {
   for (const RecognitionGoal& goal : GoalsOf(report)) {
     goals.push_back({{"goal", goal.name},
                      {goal.is_length ? "at_most" : "at_least", goal.bound},
-                     {"value", NumberOrNull(goal.value)},
+                     {"value", reports::NumberOrNull(goal.value)},
                      {"verdict", ToString(goal.verdict())}});
   }
   return goals;
@@ -179,7 +179,7 @@ std::string ReportText(const RecognitionReport& report) {
       "has at least half of its points, and of whose points at least half are its own; distances "
       "are from the camera to the thing, the robot's base stands up to {:.1f} m before the table's "
       "middle\n\n{}{}\n",
-      report.tables, report.seed, perception::TableVariety().farthest, FormatTable(rows),
+      report.tables, report.seed, perception::TableVariety().farthest, reports::FormatTable(rows),
       LeftOutRowsText(things));
   text += BoxesText(report) + "\n";
   for (const RecognitionGoal& goal : GoalsOf(report)) text += GoalText(goal);
@@ -202,11 +202,11 @@ ordered_json ToJson(const RecognitionReport& report) {
     for (const ThingShare* share :
          {&kFound, &kNamed, &kNamedOfFound, &kOwnLabel, &kUnknown, &kUnknownOfFound})
       one[share->name] = ShareToJson(part.things, *share);
-    one["median_error"] = NumberOrNull(sums.median_error);
-    one["error_95"] = NumberOrNull(sums.error_95);
-    one["median_error_base"] = NumberOrNull(sums.median_error_B);
-    one["error_95_base"] = NumberOrNull(sums.error_B_95);
-    one["median_turn"] = NumberOrNull(sums.median_turn);
+    one["median_error"] = reports::NumberOrNull(sums.median_error);
+    one["error_95"] = reports::NumberOrNull(sums.error_95);
+    one["median_error_base"] = reports::NumberOrNull(sums.median_error_B);
+    one["error_95_base"] = reports::NumberOrNull(sums.error_B_95);
+    one["median_turn"] = reports::NumberOrNull(sums.median_turn);
     parts.push_back(one);
   }
   for (const auto& [names, count] : ConfusionsOf(things))
@@ -228,4 +228,4 @@ ordered_json ToJson(const RecognitionReport& report) {
           {"seconds_per_cloud", report.seconds}};
 }
 
-}  // namespace hires::evaluation
+}  // namespace hires::lab

@@ -6,7 +6,7 @@
 
 #include "hires/base/error.h"
 
-namespace hires::evaluation {
+namespace hires::lab {
 namespace {
 
 using Eigen::ArrayXd;
@@ -92,4 +92,4 @@ FittedRegression FitLinear(const MatrixXd& x, const VectorXd& y) {
   return fit;
 }
 
-}  // namespace hires::evaluation
+}  // namespace hires::lab

@@ -2,7 +2,7 @@
 
 #include <Eigen/Core>
 
-namespace hires::evaluation {
+namespace hires::lab {
 
 struct FittedRegression {
   Eigen::VectorXd weight{};
@@ -26,4 +26,4 @@ FittedRegression FitLinear(const Eigen::MatrixXd& x, const Eigen::VectorXd& y);
 /// Of y, each with its log odds.
 double LogLikelihood(const Eigen::VectorXd& log_odds, const Eigen::VectorXd& y);
 
-}  // namespace hires::evaluation
+}  // namespace hires::lab

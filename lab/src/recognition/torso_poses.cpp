@@ -15,7 +15,7 @@
 #include "hires/skills/grasp_quality.h"
 #include "hires/skills/head_aim.h"
 
-namespace hires::evaluation {
+namespace hires::lab {
 namespace {
 
 using base::Rng;
@@ -186,4 +186,4 @@ std::optional<TorsoPosesReport> PlayTorsoPoses(const TorsoPosesOrder& order,
   return report;
 }
 
-}  // namespace hires::evaluation
+}  // namespace hires::lab

@@ -11,7 +11,7 @@
 #include "hires/imagination/imagination_setup.h"
 #include "hires/perception/recogniser_config.h"
 
-namespace hires::evaluation {
+namespace hires::lab {
 
 /// From where things on a table are recognised and grasped best: torso down, in the middle and up,
 /// at four places in front of it (dissertation, section 6.2.1, Figures 6.5 and 6.6).
@@ -49,4 +49,4 @@ std::optional<TorsoPosesReport> PlayTorsoPoses(const TorsoPosesOrder& order,
 std::string ReportText(const TorsoPosesReport& report);
 nlohmann::ordered_json ToJson(const TorsoPosesReport& report);
 
-}  // namespace hires::evaluation
+}  // namespace hires::lab

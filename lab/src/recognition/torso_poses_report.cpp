@@ -8,7 +8,7 @@
 #include "reports/report_table.h"
 #include "reports/statistics.h"
 
-namespace hires::evaluation {
+namespace hires::lab {
 namespace {
 
 using nlohmann::ordered_json;
@@ -42,21 +42,21 @@ std::vector<Pose> PosesOf(const TorsoPosesReport& report, int torso, int base) {
   return poses;
 }
 
-std::string IntervalText(const Interval& value) {
+std::string IntervalText(const reports::Interval& value) {
   return fmt::format("{:.2f} ({:.2f} .. {:.2f})", value.estimate, value.lower, value.upper);
 }
 
-Interval IntervalOf(const TorsoPosesReport& report, int torso, int base, const Indicator& measure) {
-  return BootstrapInterval(ByKind(report, PosesOf(report, torso, base), measure), base::Rng(1));
+reports::Interval IntervalOf(const TorsoPosesReport& report, int torso, int base, const Indicator& measure) {
+  return reports::BootstrapInterval(ByKind(report, PosesOf(report, torso, base), measure), base::Rng(1));
 }
 
 /// Of a measure at some poses less at others, thing by thing.
-Interval DifferenceOf(const TorsoPosesReport& report, const std::vector<Pose>& first,
+reports::Interval DifferenceOf(const TorsoPosesReport& report, const std::vector<Pose>& first,
                       const std::vector<Pose>& second, const Indicator& measure) {
   std::vector<double> one = ByKind(report, first, measure);
   const std::vector<double> other = ByKind(report, second, measure);
   for (std::size_t i = 0; i < one.size(); ++i) one[i] -= other[i];
-  return BootstrapInterval(one, base::Rng(1));
+  return reports::BootstrapInterval(one, base::Rng(1));
 }
 
 int NumGrasps(const TorsoPosesReport& report, const std::vector<Pose>& poses) {
@@ -70,7 +70,7 @@ int NumGrasps(const TorsoPosesReport& report, const std::vector<Pose>& poses) {
 
 struct Finding {
   std::string what;
-  Interval difference;
+  reports::Interval difference;
   double from;  ///< mean of what is subtracted
 };
 
@@ -79,14 +79,14 @@ std::vector<Finding> FindingsOf(const TorsoPosesReport& report) {
   const auto torso = [&](int t) { return PosesOf(report, t, -1); };
   std::vector<Finding> findings{
       {"recognition, torso down less up", DifferenceOf(report, torso(0), torso(up), Recognised),
-       Mean(ByKind(report, torso(up), Recognised))},
+       reports::Mean(ByKind(report, torso(up), Recognised))},
       {"grasp quality, torso up less down", DifferenceOf(report, torso(up), torso(0), Quality),
-       Mean(ByKind(report, torso(0), Quality))}};
+       reports::Mean(ByKind(report, torso(0), Quality))}};
   for (int base = 1; base < static_cast<int>(report.bases.size()); ++base) {
     findings.push_back(
         {fmt::format("recognition, base {} less default", report.bases[base]),
          DifferenceOf(report, PosesOf(report, -1, base), PosesOf(report, -1, 0), Recognised),
-         Mean(ByKind(report, PosesOf(report, -1, 0), Recognised))});
+         reports::Mean(ByKind(report, PosesOf(report, -1, 0), Recognised))});
   }
   return findings;
 }
@@ -106,7 +106,7 @@ std::string ReportText(const TorsoPosesReport& report) {
   std::string text = fmt::format(
       "{} forms of things, {} looks at each from each pose; simulated; means over forms with 95 % "
       "intervals [bootstrap, percentiles]\n\n{}\n",
-      report.kinds.size(), report.looks, FormatTable(rows));
+      report.kinds.size(), report.looks, reports::FormatTable(rows));
   std::vector<std::vector<std::string>> kinds{{"thing"}};
   for (const std::string& torso : report.torsos) kinds[0].push_back("recognition " + torso);
   for (const std::string& torso : report.torsos) kinds[0].push_back("grasp " + torso);
@@ -118,7 +118,7 @@ std::string ReportText(const TorsoPosesReport& report) {
         kinds[k + 1].push_back(fmt::format("{:.2f}", means[k]));
     }
   }
-  text += FormatTable(kinds) + "\n";
+  text += reports::FormatTable(kinds) + "\n";
   for (const Finding& finding : FindingsOf(report))
     text += fmt::format("{}: {}\n", finding.what, IntervalText(finding.difference));
   return text;
@@ -137,15 +137,15 @@ ordered_json ToJson(const TorsoPosesReport& report) {
     }
     poses.push_back({{"torso", report.torsos[torso]},
                      {"base", report.bases[base]},
-                     {"recognition", IntervalJson(IntervalOf(report, torso, base, Recognised))},
-                     {"grasp_quality", IntervalJson(IntervalOf(report, torso, base, Quality))},
+                     {"recognition", reports::IntervalJson(IntervalOf(report, torso, base, Recognised))},
+                     {"grasp_quality", reports::IntervalJson(IntervalOf(report, torso, base, Quality))},
                      {"grasps", NumGrasps(report, {{torso, base}})},
                      {"kinds", kinds}});
   }
   for (const Finding& finding : FindingsOf(report))
     findings.push_back({{"finding", finding.what},
-                        {"difference", IntervalJson(finding.difference)},
-                        {"relative", NumberOrNull(finding.difference.estimate / finding.from)}});
+                        {"difference", reports::IntervalJson(finding.difference)},
+                        {"relative", reports::NumberOrNull(finding.difference.estimate / finding.from)}});
   return {{"schema", "hires/torso_poses"},
           {"version", 1},
           {"looks", report.looks},
@@ -153,4 +153,4 @@ ordered_json ToJson(const TorsoPosesReport& report) {
           {"findings", findings}};
 }
 
-}  // namespace hires::evaluation
+}  // namespace hires::lab

@@ -14,7 +14,7 @@
 #include "hires/base/spelling.h"
 #include "hires/base/text.h"
 
-namespace hires::evaluation {
+namespace hires::lab {
 namespace {
 
 constexpr double kLongest = 86400.0;  // [s]
@@ -364,4 +364,4 @@ std::vector<Play> PlaysFor(const Catalogue& catalogue, const std::vector<Catalog
   return order;
 }
 
-}  // namespace hires::evaluation
+}  // namespace hires::lab

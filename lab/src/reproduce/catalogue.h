@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-namespace hires::evaluation {
+namespace hires::lab {
 
 /// One call of `hires` whose answer holds results of the dissertation.
 struct Play {
@@ -96,4 +96,4 @@ std::vector<Play> PlaysFor(const Catalogue& catalogue, const std::vector<Catalog
 /// Names of the plays whose answers a play's command takes.
 std::vector<std::string> NeededBy(const Play& play);
 
-}  // namespace hires::evaluation
+}  // namespace hires::lab

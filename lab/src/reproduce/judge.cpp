@@ -12,7 +12,7 @@
 #include "hires/base/text.h"
 #include "reports/report_table.h"
 
-namespace hires::evaluation {
+namespace hires::lab {
 namespace {
 
 using nlohmann::ordered_json;
@@ -198,10 +198,10 @@ ordered_json ValueJson(const JudgedValue& judged) {
           {"unit", judged.value.unit},
           {"at", ToString(judged.value.at)},
           {"over", judged.value.over ? ordered_json(ToString(*judged.value.over)) : ordered_json()},
-          {"published", NumberOrNull(judged.value.published)},
-          {"found", found ? NumberOrNull(found->number) : ordered_json()},
-          {"lower", found ? NumberOrNull(found->lower) : ordered_json()},
-          {"upper", found ? NumberOrNull(found->upper) : ordered_json()},
+          {"published", reports::NumberOrNull(judged.value.published)},
+          {"found", found ? reports::NumberOrNull(found->number) : ordered_json()},
+          {"lower", found ? reports::NumberOrNull(found->lower) : ordered_json()},
+          {"upper", found ? reports::NumberOrNull(found->upper) : ordered_json()},
           {"accepted", ToString(judged.value.acceptance)},
           {"judged", IsJudged(judged)},
           {"holds", judged.holds},
@@ -329,7 +329,7 @@ std::string VerdictTable(const std::vector<JudgedItem>& items) {
     const bool is_open = IsOpen(judged.verdict) || judged.verdict == Verdict::kNotPlayed;
     if (is_open) reasons += fmt::format("\n{}: {}\n", judged.item.name, judged.reason);
   }
-  return FormatTable(rows) + reasons;
+  return reports::FormatTable(rows) + reasons;
 }
 
 ordered_json ToJson(const std::vector<JudgedItem>& items) {
@@ -338,4 +338,4 @@ ordered_json ToJson(const std::vector<JudgedItem>& items) {
   return list;
 }
 
-}  // namespace hires::evaluation
+}  // namespace hires::lab

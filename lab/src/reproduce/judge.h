@@ -8,7 +8,7 @@
 
 #include "lab/src/reproduce/catalogue.h"
 
-namespace hires::evaluation {
+namespace hires::lab {
 
 enum class Verdict {
   kReproduced,     ///< all numbers are as accepted
@@ -66,4 +66,4 @@ std::string VerdictTable(const std::vector<JudgedItem>& items);
 /// [{"item", "section", "title", "verdict", "reason", "plays", "drawings", "bounds", "values"}].
 nlohmann::ordered_json ToJson(const std::vector<JudgedItem>& items);
 
-}  // namespace hires::evaluation
+}  // namespace hires::lab

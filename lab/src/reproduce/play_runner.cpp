@@ -15,10 +15,9 @@
 #include "hires/base/text.h"
 #include "cli/report_output.h"
 
-namespace hires::cli {
+namespace hires::lab {
 namespace {
 
-using evaluation::Play;
 using nlohmann::ordered_json;
 
 constexpr double kGrace = 10.0;        // [s] for a play to end when it is asked to
@@ -62,7 +61,7 @@ class PlayRunner {
   void Take(const Play& play) {
     const auto stored = store_.Find(play);
     if (stored && !order_.again) return Read(play, *stored, false);
-    for (const std::string& needed : evaluation::NeededBy(play)) {
+    for (const std::string& needed : NeededBy(play)) {
       if (done_.answers.count(needed) > 0) continue;
       done_.missing[play.name] = fmt::format("needs the answer of '{}', which is missing", needed);
       progress_.left -= play.seconds;
@@ -156,7 +155,7 @@ class PlayRunner {
     std::vector<std::string> words{"hires"};
     words.insert(words.end(), play.command.begin(), play.command.end());
     done_.answers[play.name] = {std::move(content), store_.KeyOf(play), stored.build,
-                                CommandText(words), stored.seconds,     is_new};
+                                cli::CommandText(words), stored.seconds,     is_new};
   }
 
   const PlaysOrder& order_;
@@ -171,4 +170,4 @@ PlaysDone PlayAll(const PlaysOrder& order, PlayStore* store) {
   return PlayRunner(order, store).Run();
 }
 
-}  // namespace hires::cli
+}  // namespace hires::lab

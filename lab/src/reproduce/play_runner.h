@@ -9,7 +9,7 @@
 #include "lab/src/reproduce/play_store.h"
 #include "lab/src/reproduce/catalogue.h"
 
-namespace hires::cli {
+namespace hires::lab {
 
 /// What became of the plays, by name.
 struct PlaysDone {
@@ -32,7 +32,7 @@ struct PlaysProgress {
 };
 
 struct PlaysOrder {
-  std::vector<evaluation::Play> plays;  ///< each after those whose answers it takes
+  std::vector<Play> plays;  ///< each after those whose answers it takes
   std::string program;                  ///< that plays: `hires`
   std::string package;
   bool again{false};  ///< what is there is played once more
@@ -45,4 +45,4 @@ struct PlaysOrder {
 /// @pre called by the main thread: a child ends with the thread that started it.
 PlaysDone PlayAll(const PlaysOrder& order, PlayStore* store);
 
-}  // namespace hires::cli
+}  // namespace hires::lab

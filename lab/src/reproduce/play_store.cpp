@@ -11,7 +11,7 @@
 #include "hires/base/text.h"
 #include "reports/configuration_hash.h"
 
-namespace hires::cli {
+namespace hires::lab {
 namespace {
 
 namespace fs = std::filesystem;
@@ -38,30 +38,30 @@ std::string HashOfFile(const std::string& path) {
 
 PlayStore::PlayStore(Place place) : place_(std::move(place)) { MakeFolder(place_.folder); }
 
-std::string PlayStore::KeyOf(const evaluation::Play& play) {
+std::string PlayStore::KeyOf(const Play& play) {
   const auto known = keys_.find(play.name);
   if (known != keys_.end()) return known->second;
   base::Hasher hasher;
   hasher.Add(HIRES_VERSION);
   for (const std::string& word : play.command) hasher.Add(word);
   for (const std::string& input : play.inputs) hasher.Add(HashOfInput(input));
-  for (const std::string& other : evaluation::NeededBy(play)) hasher.Add(keys_.at(other));
+  for (const std::string& other : NeededBy(play)) hasher.Add(keys_.at(other));
   return keys_[play.name] = base::HexOf(hasher.value());
 }
 
 std::string PlayStore::HashOfInput(const std::string& input) {
   const auto known = inputs_.find(input);
   if (known != inputs_.end()) return known->second;
-  return inputs_[input] = evaluation::InputHash(place_.package, input);
+  return inputs_[input] = reports::InputHash(place_.package, input);
 }
 
-std::string PlayStore::FolderOf(const evaluation::Play& play) {
+std::string PlayStore::FolderOf(const Play& play) {
   return place_.folder + "/" + play.name + "-" + KeyOf(play);
 }
 
-void PlayStore::MakeRoom(const evaluation::Play& play) { MakeFolder(FolderOf(play)); }
+void PlayStore::MakeRoom(const Play& play) { MakeFolder(FolderOf(play)); }
 
-std::optional<PlayStore::Stored> PlayStore::Find(const evaluation::Play& play) {
+std::optional<PlayStore::Stored> PlayStore::Find(const Play& play) {
   const std::string note = NoteOf(FolderOf(play));
   if (!fs::exists(note) || !fs::exists(AnswerOf(play))) return std::nullopt;
   const auto content = ordered_json::parse(base::ReadTextFile(note), nullptr, false);
@@ -74,14 +74,14 @@ std::optional<PlayStore::Stored> PlayStore::Find(const evaluation::Play& play) {
   return Stored{AnswerOf(play), content["build"], content["wall_seconds"]};
 }
 
-void PlayStore::Keep(const evaluation::Play& play, double seconds) {
+void PlayStore::Keep(const Play& play, double seconds) {
   const ordered_json note{{"play", play.name}, {"build", place_.build}, {"wall_seconds", seconds}};
   base::ReplaceTextFile(NoteOf(FolderOf(play)), note.dump(1) + "\n");
 }
 
-void PlayStore::Forget(const evaluation::Play& play) {
+void PlayStore::Forget(const Play& play) {
   std::error_code ignored;  // what remains is found by MakeFolder or the next play
   fs::remove_all(FolderOf(play), ignored);
 }
 
-}  // namespace hires::cli
+}  // namespace hires::lab

@@ -7,7 +7,7 @@
 
 #include "lab/src/reproduce/catalogue.h"
 
-namespace hires::cli {
+namespace hires::lab {
 
 /// The content of a file: 16 digits.  @throws base::ConfigError if it cannot be read.
 std::string HashOfFile(const std::string& path);
@@ -26,7 +26,7 @@ class PlayStore {
   /// What an answer rests on: the command, what counts of the play's inputs, this version, and the
   /// same of the plays whose answers it takes. 16 digits.
   /// @pre asked of those before.  @throws base::ConfigError for an input that cannot be read.
-  std::string KeyOf(const evaluation::Play& play);
+  std::string KeyOf(const Play& play);
 
   struct Stored {
     std::string path;     ///< of the answer
@@ -34,19 +34,19 @@ class PlayStore {
     double seconds{0.0};  ///< [s] wall time it took
   };
   /// The answer of this key, if it is there.  @throws base::ConfigError for a broken file.
-  std::optional<Stored> Find(const evaluation::Play& play);
+  std::optional<Stored> Find(const Play& play);
 
   /// Where the play of this key writes its answer, keeps what it needs to go on, and what it says.
-  std::string FolderOf(const evaluation::Play& play);
+  std::string FolderOf(const Play& play);
   /// Makes that folder where it is missing.  @throws base::ConfigError if it cannot be made.
-  void MakeRoom(const evaluation::Play& play);
-  std::string AnswerOf(const evaluation::Play& play) { return FolderOf(play) + "/answer.json"; }
-  std::string LogOf(const evaluation::Play& play) { return FolderOf(play) + "/log.txt"; }
+  void MakeRoom(const Play& play);
+  std::string AnswerOf(const Play& play) { return FolderOf(play) + "/answer.json"; }
+  std::string LogOf(const Play& play) { return FolderOf(play) + "/log.txt"; }
 
   /// Notes that its answer is whole.
-  void Keep(const evaluation::Play& play, double seconds);
+  void Keep(const Play& play, double seconds);
   /// Forgets it, with all that was kept to go on.
-  void Forget(const evaluation::Play& play);
+  void Forget(const Play& play);
 
   const std::string& build() const { return place_.build; }
 
@@ -57,4 +57,4 @@ class PlayStore {
   std::map<std::string, std::string> keys_, inputs_;  // by play; by input: many plays share them
 };
 
-}  // namespace hires::cli
+}  // namespace hires::lab

@@ -4,7 +4,7 @@
 
 #include "hires/base/text.h"
 
-namespace hires::evaluation {
+namespace hires::lab {
 namespace {
 
 using base::ToLower;
@@ -117,4 +117,4 @@ bool Belongings::IsOn(const std::string& pose, const Eigen::Vector3d& p_M) const
   return false;
 }
 
-}  // namespace hires::evaluation
+}  // namespace hires::lab

@@ -7,7 +7,7 @@
 #include "hires/geometry/pose.h"
 #include "hires/knowledge/fluent_yaml.h"
 
-namespace hires::evaluation {
+namespace hires::lab {
 
 /// Which pose belongs to whom, as knowledge files say. Keys are in lower case, values as in the
 /// files.
@@ -39,4 +39,4 @@ class Belongings {
   std::map<std::string, Instance> instances_;
 };
 
-}  // namespace hires::evaluation
+}  // namespace hires::lab

@@ -4,7 +4,7 @@
 
 #include "hires/simulation/robot_clearance.h"
 
-namespace hires::evaluation {
+namespace hires::lab {
 namespace {
 
 using geometry::Collision;
@@ -73,4 +73,4 @@ std::vector<Overlap> NewOverlaps(const WorldAtStart& original, const WorldAtStar
   return overlaps;
 }
 
-}  // namespace hires::evaluation
+}  // namespace hires::lab

@@ -7,7 +7,7 @@
 #include "hires/geometry/shape.h"
 #include "hires/world/world.h"
 
-namespace hires::evaluation {
+namespace hires::lab {
 
 /// A world at the start of a run, and where the robot stands in it.
 struct WorldAtStart {
@@ -29,4 +29,4 @@ std::vector<Overlap> NewOverlaps(const WorldAtStart& original, const WorldAtStar
                                  const std::string& robot,
                                  const std::vector<geometry::Collision>& robot_shapes_B);
 
-}  // namespace hires::evaluation
+}  // namespace hires::lab

@@ -13,7 +13,7 @@
 #include "hires/base/run_processes.h"
 #include "hires/base/text.h"
 
-namespace hires::cli {
+namespace hires::lab {
 namespace {
 
 namespace fs = std::filesystem;
@@ -178,4 +178,4 @@ TryEnd PlayTry(const ScenarioOrder& order, const ScenarioPlayer& player,
   return end;
 }
 
-}  // namespace hires::cli
+}  // namespace hires::lab

@@ -7,7 +7,7 @@
 
 #include "lab/src/series/scenario_variant.h"
 
-namespace hires::cli {
+namespace hires::lab {
 
 /// The verb of `hires` that plays one run through the graph of nodes:
 /// `hires scenario_run ORDER.json RESULT.json FIRST_PORT`.
@@ -26,7 +26,7 @@ struct ScenarioPlayer {
 
 /// One run that is to be played, in a folder of its own.
 struct ScenarioOrder {
-  evaluation::VariantFiles files;
+  VariantFiles files;
   std::string task, truth, folder;
   std::uint64_t seed{1};
 };
@@ -61,4 +61,4 @@ struct TryEnd {
 TryEnd PlayTry(const ScenarioOrder& order, const ScenarioPlayer& player,
                const std::function<bool()>& cancelled);
 
-}  // namespace hires::cli
+}  // namespace hires::lab

@@ -10,7 +10,7 @@
 #include "hires/base/rng.h"
 #include "hires/base/text.h"
 
-namespace hires::evaluation {
+namespace hires::lab {
 namespace {
 
 using knowledge::KnowledgeFile;
@@ -182,4 +182,4 @@ std::string TaskOfInstruction(const std::string& instruction) {
   return base::Join(words, " ");
 }
 
-}  // namespace hires::evaluation
+}  // namespace hires::lab

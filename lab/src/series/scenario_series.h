@@ -9,7 +9,7 @@
 
 // Series of runs of one scenario that differ in where things stand, in what the robot is told to do
 // and in how well it senses (dissertation, section 5.7.2).
-namespace hires::evaluation {
+namespace hires::lab {
 
 /// What takes one choice together.
 struct SeriesGroup {
@@ -64,4 +64,4 @@ SeriesStart StartOfRun(const ScenarioSeries& series, const std::vector<int>& cho
 /// "_Task" behind the task's name.
 std::string TaskOfInstruction(const std::string& instruction);
 
-}  // namespace hires::evaluation
+}  // namespace hires::lab

@@ -14,7 +14,7 @@
 #include "sim_robot/scenario.h"
 #include "hires/geometry/angles.h"
 
-namespace hires::evaluation {
+namespace hires::lab {
 namespace {
 
 using base::ConfigError;
@@ -61,7 +61,7 @@ class Variant {
   Variant(const ScenarioSeries& series, const VariantOrder& order)
       : series_(series),
         order_(order),
-        scenario_(ReadScenario(order.scenario)),
+        scenario_(sim_robot::ReadScenario(order.scenario)),
         world_(order.world) {
     if (!order.task.empty()) scenario_.task = order.task;
     for (const std::string& path : scenario_.knowledge) {
@@ -90,10 +90,10 @@ class Variant {
   }
 
  private:
-  ScenarioObject* FindObject(const std::string& name) {
+  sim_robot::ScenarioObject* FindObject(const std::string& name) {
     const auto found =
         std::find_if(scenario_.objects.begin(), scenario_.objects.end(),
-                     [&](const ScenarioObject& object) { return object.name == ToLower(name); });
+                     [&](const sim_robot::ScenarioObject& object) { return object.name == ToLower(name); });
     return found == scenario_.objects.end() ? nullptr : &*found;
   }
 
@@ -133,7 +133,7 @@ class Variant {
     for (const auto& [owner, concept_name] : known.OwnersOf(pose)) {
       const std::string name = ToLower(owner);
       if (concept_name == "Robot") scenario_.X_MB = Moved(scenario_.X_MB, moves);
-      if (ScenarioObject* object = FindObject(name)) object->X_MO = Moved(object->X_MO, moves);
+      if (sim_robot::ScenarioObject* object = FindObject(name)) object->X_MO = Moved(object->X_MO, moves);
       if (!world_.Has(name)) continue;
       RequireSamePlace(pose, name, known);
       world_.Move(name, moves);
@@ -143,7 +143,7 @@ class Variant {
 
   /// What nobody told the robot of stands on furniture that goes away below it.
   void MoveHidden(const Moves& moves, const Belongings& known) {
-    for (ScenarioObject& object : scenario_.objects) {
+    for (sim_robot::ScenarioObject& object : scenario_.objects) {
       if (known.Has(object.name)) continue;
       for (const auto& [pose, pose_moves] : moves) {
         if (!known.IsOn(pose, object.X_MO.translation)) continue;
@@ -202,13 +202,13 @@ class Variant {
     if (!scenario_.torso.empty()) json["robot"]["torso"] = scenario_.torso;
     if (!scenario_.arms.empty()) json["robot"]["arms"] = scenario_.arms;
     json["objects"] = json["hidden"] = ordered_json::array();
-    for (const ScenarioObject& object : scenario_.objects) {
+    for (const sim_robot::ScenarioObject& object : scenario_.objects) {
       json[object.is_told ? "objects" : "hidden"].push_back(ObjectJson(object));
     }
     return json.dump(2) + '\n';
   }
 
-  static ordered_json ObjectJson(const ScenarioObject& object) {
+  static ordered_json ObjectJson(const sim_robot::ScenarioObject& object) {
     const Eigen::Vector3d& p = object.X_MO.translation;
     ordered_json json{{"name", object.name},
                       {"pose", {p.x(), p.y(), p.z(), geometry::YawOf(object.X_MO.rotation)}}};
@@ -219,7 +219,7 @@ class Variant {
 
   const ScenarioSeries& series_;
   const VariantOrder& order_;
-  Scenario scenario_;
+  sim_robot::Scenario scenario_;
   WorldFile world_;
   std::vector<KnowledgeFile> files_;
   std::vector<Fluent> fluents_;      // of all files, one behind the other
@@ -235,4 +235,4 @@ VariantFiles WriteVariant(const ScenarioSeries& series, const std::vector<int>& 
   return variant.Write();
 }
 
-}  // namespace hires::evaluation
+}  // namespace hires::lab

@@ -5,7 +5,7 @@
 
 #include "lab/src/series/scenario_series.h"
 
-namespace hires::evaluation {
+namespace hires::lab {
 
 /// From what the world of a run is made.
 struct VariantOrder {
@@ -33,4 +33,4 @@ struct VariantFiles {
 VariantFiles WriteVariant(const ScenarioSeries& series, const std::vector<int>& choices,
                           const VariantOrder& order);
 
-}  // namespace hires::evaluation
+}  // namespace hires::lab

@@ -11,7 +11,7 @@
 #include "hires/base/text.h"
 #include "reports/report_table.h"
 
-namespace hires::evaluation {
+namespace hires::lab {
 namespace {
 
 using nlohmann::ordered_json;
@@ -69,7 +69,7 @@ std::string AveragesTable(const SeriesReport& report) {
   };
   add("all runs", AveragesOf(report.runs));
   add("those that succeeded", AveragesOf(Succeeded(report)));
-  return FormatTable(table) +
+  return reports::FormatTable(table) +
          "(a second: fluents of all these runs / their simulated time; new: without those that "
          "were known before the run)\n";
 }
@@ -101,7 +101,7 @@ std::string RunTable(const SeriesReport& report) {
                      std::to_string(run.fluents), RestartsText(run), Short(run.cause),
                      Short(TruthText(run))});
   }
-  return FormatTable(table);
+  return reports::FormatTable(table);
 }
 
 int CountOf(const SeriesReport& report, SeriesOutcome outcome) {
@@ -123,14 +123,14 @@ std::string OutcomeTable(const SeriesReport& report) {
   Table table{{"outcome", "runs", "share", "95 % interval (Wilson)"}};
   const int all = static_cast<int>(report.runs.size());
   const auto add = [&](const std::string& what, int count) {
-    const Interval share = WilsonInterval(count, all);
+    const reports::Interval share = reports::WilsonInterval(count, all);
     table.push_back({what, std::to_string(count), fmt::format("{:.0f} %", 100.0 * share.estimate),
                      fmt::format("{:.0f} .. {:.0f} %", 100.0 * share.lower, 100.0 * share.upper)});
   };
   for (const SeriesOutcome outcome : AllOutcomes())
     add(ToString(outcome), CountOf(report, outcome));
   add("succeeded, and in truth nothing fell or was touched", CountDone(report));
-  return FormatTable(table);
+  return reports::FormatTable(table);
 }
 
 std::string ChoiceTable(const SeriesReport& report) {
@@ -143,7 +143,7 @@ std::string ChoiceTable(const SeriesReport& report) {
          fmt::format("{:.0f} .. {:.0f} %", 100.0 * each.share.lower, 100.0 * each.share.upper),
          base::Join(each.members, "; ")});
   }
-  return FormatTable(table);
+  return reports::FormatTable(table);
 }
 
 /// "poseTable1 hasX 1 hasY -2"; zeros are left out.
@@ -235,7 +235,7 @@ std::vector<ChoiceShare> SharesByChoice(const SeriesReport& report) {
       share.group = group.name;
       share.choice = choice;
       share.members = MembersOf(report.series, group, static_cast<std::size_t>(choice));
-      share.share = WilsonInterval(share.succeeded, share.played);
+      share.share = reports::WilsonInterval(share.succeeded, share.played);
       shares.push_back(share);
     }
   }
@@ -321,4 +321,4 @@ ordered_json ToJson(const SeriesReport& report) {
       {"runs", runs}};
 }
 
-}  // namespace hires::evaluation
+}  // namespace hires::lab

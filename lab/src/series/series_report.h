@@ -10,7 +10,7 @@
 #include "lab/src/series/series_run.h"
 #include "reports/statistics.h"
 
-namespace hires::evaluation {
+namespace hires::lab {
 
 /// All that became of a series.
 struct SeriesReport {
@@ -26,7 +26,7 @@ struct ChoiceShare {
   int choice{0};                     ///< from 0
   std::vector<std::string> members;  ///< what differs by it, with what it is: "poseTable1 hasX 1"
   int succeeded{0}, played{0};
-  Interval share;  ///< of successes, Wilson's
+  reports::Interval share;  ///< of successes, Wilson's
 };
 std::vector<ChoiceShare> SharesByChoice(const SeriesReport& report);
 
@@ -58,4 +58,4 @@ std::string SeriesCsv(const SeriesReport& report);
 /// of all runs, no mean of the runs' own rates) and `mean_simulated_seconds` are those of all runs.
 nlohmann::ordered_json ToJson(const SeriesReport& report);
 
-}  // namespace hires::evaluation
+}  // namespace hires::lab

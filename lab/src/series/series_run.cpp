@@ -8,7 +8,7 @@
 #include "hires/base/check.h"
 #include "hires/base/error.h"
 
-namespace hires::evaluation {
+namespace hires::lab {
 namespace {
 
 using nlohmann::ordered_json;
@@ -166,4 +166,4 @@ void SeriesJournal::Append(const SeriesRun& run) {
   runs_.push_back(run);
 }
 
-}  // namespace hires::evaluation
+}  // namespace hires::lab

@@ -9,7 +9,7 @@
 #include "lab/src/run_journal.h"
 #include "hires/knowledge/store.h"
 
-namespace hires::evaluation {
+namespace hires::lab {
 
 /// How a run of a series ended.
 enum class SeriesOutcome {
@@ -71,4 +71,4 @@ class SeriesJournal {
   RunJournal journal_;  // last: what is there is told to the others
 };
 
-}  // namespace hires::evaluation
+}  // namespace hires::lab

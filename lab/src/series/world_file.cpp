@@ -10,7 +10,7 @@
 #include "hires/base/error.h"
 #include "hires/base/text.h"
 
-namespace hires::evaluation {
+namespace hires::lab {
 namespace {
 
 namespace fs = std::filesystem;
@@ -149,4 +149,4 @@ std::string WorldFile::WriteTo(const std::string& folder) const {
   return file;
 }
 
-}  // namespace hires::evaluation
+}  // namespace hires::lab

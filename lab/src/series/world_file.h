@@ -10,7 +10,7 @@
 #include "hires/geometry/pose.h"
 #include "hires/knowledge/pose_moves.h"
 
-namespace hires::evaluation {
+namespace hires::lab {
 
 /// Moves a pose; what is tilted stays so.
 geometry::Pose3 Moved(const geometry::Pose3& X_MB, const std::vector<knowledge::PoseMove>& moves);
@@ -45,4 +45,4 @@ class WorldFile {
   std::map<std::string, tinyxml2::XMLElement*> things_;
 };
 
-}  // namespace hires::evaluation
+}  // namespace hires::lab

@@ -11,33 +11,33 @@
 #include "cli/program.h"
 #include "cli/verb_table.h"
 
-namespace hires::cli {
+namespace hires::lab {
 namespace {
 
 constexpr char kProgramName[] = "hires_lab";
 
 int RunAnyExperiment(const ExperimentOptions& options, const LabBackends& backends) {
   const std::string& folder = backends.package_folder;
-  if (*options.decision.verb) return RunDecisionVerb(options.decision, folder, IsInterrupted);
-  if (*options.pose_error.verb) return RunPoseErrorVerb(options.pose_error, folder, IsInterrupted);
-  if (*options.detector.verb) return RunDetectorFitVerb(options.detector, folder, IsInterrupted);
-  if (*options.ladder.verb) return RunLadderVerb(options.ladder, folder, IsInterrupted);
+  if (*options.decision.verb) return RunDecisionVerb(options.decision, folder, cli::IsInterrupted);
+  if (*options.pose_error.verb) return RunPoseErrorVerb(options.pose_error, folder, cli::IsInterrupted);
+  if (*options.detector.verb) return RunDetectorFitVerb(options.detector, folder, cli::IsInterrupted);
+  if (*options.ladder.verb) return RunLadderVerb(options.ladder, folder, cli::IsInterrupted);
   if (*options.recognition.verb) {
-    return RunRecognitionVerb(options.recognition, folder, IsInterrupted);
+    return RunRecognitionVerb(options.recognition, folder, cli::IsInterrupted);
   }
   if (*options.torso_poses.verb) {
-    return RunTorsoPosesVerb(options.torso_poses, folder, IsInterrupted);
+    return RunTorsoPosesVerb(options.torso_poses, folder, cli::IsInterrupted);
   }
   if (*options.hypothesis.verb) {
-    return RunHypothesisVerb(options.hypothesis, folder, backends.play_hypothesis, IsInterrupted);
+    return RunHypothesisVerb(options.hypothesis, folder, backends.play_hypothesis, cli::IsInterrupted);
   }
-  return RunExperimentVerb(options, IsInterrupted);
+  return RunExperimentVerb(options, cli::IsInterrupted);
 }
 
-std::vector<ProgramVerb> VerbsOf(CLI::App* app, const std::vector<std::string>& arguments,
+std::vector<cli::ProgramVerb> VerbsOf(CLI::App* app, const std::vector<std::string>& arguments,
                                  const LabBackends& backends) {
   const std::string& folder = backends.package_folder;
-  VerbTable table(app, {CommandOf(kProgramName, arguments), folder});
+  cli::VerbTable table(app, {cli::CommandOf(kProgramName, arguments), folder});
   const auto report_of_experiment = [&table](ExperimentOptions* options) {
     table.SetCall(&options->hypothesis.report);
     return &options->report;
@@ -46,22 +46,22 @@ std::vector<ProgramVerb> VerbsOf(CLI::App* app, const std::vector<std::string>& 
       AddExperimentVerb, report_of_experiment,
       [&](const ExperimentOptions& options) { return RunAnyExperiment(options, backends); });
   table.Add<ScenariosOptions>(
-      AddScenariosVerb, ReportOf<ScenariosOptions>, [&](const ScenariosOptions& options) {
+      AddScenariosVerb, cli::ReportOf<ScenariosOptions>, [&](const ScenariosOptions& options) {
         return RunScenariosVerb(options, folder, static_cast<bool>(backends.scenario_run),
-                                IsInterrupted);
+                                cli::IsInterrupted);
       });
   table.Add<ExperiencesOptions>(
       AddExperiencesVerb, nullptr,
       [](const ExperiencesOptions& options) { return RunExperiencesVerb(options); },
-      OnSignal::kEnd);
-  table.Add<ReproduceOptions>(AddReproduceVerb, ReportOf<ReproduceOptions>,
+      cli::OnSignal::kEnd);
+  table.Add<ReproduceOptions>(AddReproduceVerb, cli::ReportOf<ReproduceOptions>,
                               [&](const ReproduceOptions& options) {
-                                return RunReproduceVerb(options, folder, IsInterrupted);
+                                return RunReproduceVerb(options, folder, cli::IsInterrupted);
                               });
   table.Add<LabListOptions>(
       AddLabListVerb, nullptr,
       [&](const LabListOptions& options) { return RunLabListVerb(options, folder); },
-      OnSignal::kEnd);
+      cli::OnSignal::kEnd);
   if (backends.hypothesis_run) {
     table.AddForeign(kHypothesisRunVerb, "one run of `experiment hypothesis`, which starts it",
                      backends.hypothesis_run, false);
@@ -77,10 +77,10 @@ std::vector<ProgramVerb> VerbsOf(CLI::App* app, const std::vector<std::string>& 
 
 int RunLabCommandLine(const std::vector<std::string>& arguments, const LabBackends& backends) {
   const auto add_verbs = [&](CLI::App* app) { return VerbsOf(app, arguments, backends); };
-  return RunProgram(
+  return cli::RunProgram(
       {kProgramName, "What judges HIRES: experiments, series, fits, and the dissertation's results",
        add_verbs},
       arguments);
 }
 
-}  // namespace hires::cli
+}  // namespace hires::lab

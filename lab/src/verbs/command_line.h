@@ -6,7 +6,7 @@
 
 #include "lab/src/experiment/hypothesis.h"
 
-namespace hires::cli {
+namespace hires::lab {
 
 /// One run of a series, in a process of its own through a graph of nodes: parses its arguments
 /// itself.  @return exit code.
@@ -15,7 +15,7 @@ using PlayInGraph = std::function<int(const std::vector<std::string>& arguments)
 /// What the program can do where there is ROS; all may be empty.
 struct LabBackends {
   std::string package_folder;  ///< where config/, worlds/, urdf/ and lab/ lie
-  evaluation::PlayHypothesis play_hypothesis;
+  PlayHypothesis play_hypothesis;
   PlayInGraph hypothesis_run, scenario_run;
 };
 
@@ -23,4 +23,4 @@ struct LabBackends {
 /// @param arguments  the program's name first, as in argv.
 int RunLabCommandLine(const std::vector<std::string>& arguments, const LabBackends& backends);
 
-}  // namespace hires::cli
+}  // namespace hires::lab

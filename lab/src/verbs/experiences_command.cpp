@@ -18,7 +18,7 @@
 #include "reports/report_json.h"
 #include "hires/knowledge/experience.h"
 
-namespace hires::cli {
+namespace hires::lab {
 namespace {
 
 using knowledge::ExperienceStore;
@@ -101,7 +101,7 @@ void CheckNames(const ExperienceStore& store, const ExperiencesOptions& options)
 
 int Export(const ExperiencesOptions& options) {
   const ExperienceStore store(options.store, ExperienceStore::Mode::kRead);
-  evaluation::RequireFolderOf(options.csv);
+  reports::RequireFolderOf(options.csv);
   std::string text;
   std::size_t lines = 0;
   store.ForEach(QueryOf(options), [&](const ExperienceStore::Stored& stored) {
@@ -112,14 +112,14 @@ int Export(const ExperiencesOptions& options) {
   if (lines == 0) CheckNames(store, options);
   base::ReplaceTextFile(options.csv, text);
   std::cout << fmt::format("{} parts in {}\n", lines, options.csv);
-  return kExitRecommended;
+  return cli::kExitRecommended;
 }
 
 int Told(const ExperiencesOptions& options, const std::string& text,
          const nlohmann::ordered_json& json) {
   std::cout << text;
-  if (!options.json.empty()) evaluation::WriteJson(json, options.json);
-  return kExitRecommended;
+  if (!options.json.empty()) reports::WriteJson(json, options.json);
+  return cli::kExitRecommended;
 }
 
 }  // namespace
@@ -134,31 +134,31 @@ void AddExperiencesVerb(CLI::App* app, ExperiencesOptions* o) {
   o->export_verb->add_option("--state", o->state, "notopple, shaking or topple");
   for (const auto& [option, bound] : {std::pair("--from", &o->from), std::pair("--to", &o->to)}) {
     o->export_verb->add_option(option, *bound, "[s] of the run, included")
-        ->check(NumberBetween(-kLatest, kLatest));
+        ->check(cli::NumberBetween(-kLatest, kLatest));
   }
   o->export_verb->add_option("--action", o->action, "any part of the action's text");
   o->export_verb->add_option("--run", o->run, "such as fast/3");
   o->export_verb->add_option("--episode", o->episode, "of each run")
-      ->check(NumberBetween(0, 1000000000));
+      ->check(cli::NumberBetween(0, 1000000000));
   o->stats_verb = AddInner(o->verb, "stats", "parts by action and state, falls, episodes, size", o);
   o->stats_verb->add_option("--json", o->json, "write everything to this file, for machines");
   o->analyse_verb =
       AddInner(o->verb, "analyse", "what filters do, and which dynamics predict a fall", o);
   o->analyse_verb->add_option("--json", o->json, "write everything to this file, for machines");
-  o->analyse_verb->add_option("--seed", o->seed, "of noise and resampling")->check(WholeNumber());
+  o->analyse_verb->add_option("--seed", o->seed, "of noise and resampling")->check(cli::WholeNumber());
 }
 
 int RunExperiencesVerb(const ExperiencesOptions& options) {
   base::RefuseOwnInput("--csv", options.csv, "store", options.store);
   base::RefuseOwnInput("--json", options.json, "store", options.store);
   if (*options.export_verb) return Export(options);
-  if (!options.json.empty()) evaluation::RequireFolderOf(options.json);
+  if (!options.json.empty()) reports::RequireFolderOf(options.json);
   const ExperienceStore store(options.store, ExperienceStore::Mode::kRead);
   std::string text;
   const nlohmann::ordered_json json = *options.stats_verb
-                                          ? evaluation::StatsOf(store, &text)
-                                          : evaluation::AnalysisOf(store, options.seed, &text);
+                                          ? StatsOf(store, &text)
+                                          : AnalysisOf(store, options.seed, &text);
   return Told(options, text, json);
 }
 
-}  // namespace hires::cli
+}  // namespace hires::lab

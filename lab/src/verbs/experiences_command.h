@@ -7,7 +7,7 @@ namespace CLI {
 class App;
 }
 
-namespace hires::cli {
+namespace hires::lab {
 
 /// What was typed behind `hires experiences`.
 struct ExperiencesOptions {
@@ -27,4 +27,4 @@ void AddExperiencesVerb(CLI::App* app, ExperiencesOptions* options);
 /// @return kExitRecommended.  @throws base::ConfigError for bad input.
 int RunExperiencesVerb(const ExperiencesOptions& options);
 
-}  // namespace hires::cli
+}  // namespace hires::lab

@@ -23,7 +23,7 @@
 #include "reports/timeline.h"
 #include "hires/knowledge/experience.h"
 
-namespace hires::cli {
+namespace hires::lab {
 namespace {
 
 [[noreturn]] void FailToWrite(const std::string& path) {
@@ -36,16 +36,16 @@ void CheckWritable(const std::string& path) {
   if (!path.empty() && !std::ofstream(path, std::ios::app)) FailToWrite(path);
 }
 
-evaluation::ExperimentOverrides OverridesOf(const ExperimentOptions& options) {
-  evaluation::ExperimentOverrides overrides;
+ExperimentOverrides OverridesOf(const ExperimentOptions& options) {
+  ExperimentOverrides overrides;
   if (options.verb->count("--seed") > 0) overrides.seed = options.seed;
   if (options.verb->count("--runs") > 0) overrides.runs = options.runs;
   overrides.map = options.map;
   return overrides;
 }
 
-void Print(const evaluation::ExperimentReport& report) {
-  std::cout << evaluation::ReportText(report) << '\n';
+void Print(const ExperimentReport& report) {
+  std::cout << ReportText(report) << '\n';
   if (report.wall_seconds > 0.0) {
     std::cout << fmt::format("{:.0f} s simulated in {:.1f} s\n", report.findings.simulated_seconds,
                              report.wall_seconds);
@@ -61,14 +61,14 @@ std::string ExperimentPath(const ExperimentOptions& options) {
                          options.report.package_folder + "/lab/config/experiments", verbs);
 }
 
-ReportOrigin OriginOf(const ExperimentOptions& options, const std::string& path,
-                      const evaluation::ExperimentConfig& config) {
+cli::ReportOrigin OriginOf(const ExperimentOptions& options, const std::string& path,
+                      const ExperimentConfig& config) {
   const auto file = [](const std::string& path) {
     return path == "scene" || path == "none" || path == "given" ? "" : path;
   };
-  ReportOrigin origin;
+  cli::ReportOrigin origin;
   origin.verb = "experiment";
-  if (!IsWanted(options.report)) return origin;
+  if (!cli::IsWanted(options.report)) return origin;
   origin.inputs = {{"experiment", path},
                    {"scene", config.scene},
                    {"uncertainty", file(config.uncertainty)},
@@ -79,7 +79,7 @@ ReportOrigin OriginOf(const ExperimentOptions& options, const std::string& path,
 /// A file that begins anew when all is played: experiences of two plays would be told apart by
 /// nothing.
 std::optional<knowledge::ExperienceStore> ExperiencesOf(
-    const ExperimentOptions& options, const evaluation::ExperimentConfig& config) {
+    const ExperimentOptions& options, const ExperimentConfig& config) {
   if (options.experiences.empty()) return std::nullopt;
   if (KindName(config) != "topple_loop") {
     throw base::ConfigError(
@@ -102,14 +102,14 @@ void AddExperimentVerb(CLI::App* app, ExperimentOptions* options) {
   verb->add_option("file", options->file,
                    "YAML file of the experiment, or its name in lab/config/experiments");
   verb->add_option("--threads", options->threads, "default: one per core; changes no number")
-      ->check(NumberBetween(1, 256));
-  verb->add_option("--seed", options->seed, "instead of the file's")->check(WholeNumber());
+      ->check(cli::NumberBetween(1, 256));
+  verb->add_option("--seed", options->seed, "instead of the file's")->check(cli::WholeNumber());
   verb->add_option("--runs", options->runs,
                    "instead of the file's number of legs, pairs, chains or runs")
-      ->check(NumberBetween(1, 1000000));
+      ->check(cli::NumberBetween(1, 1000000));
   verb->add_option("--map", options->map, "map_server YAML: its walls instead of the world's");
   verb->add_option("--csv", options->csv, "write one line per leg, rollout or run to this file");
-  AddReportOptions(verb, &options->report);
+  cli::AddReportOptions(verb, &options->report);
   verb->add_option("--junit", options->junit,
                    "write what the file expects, and whether it holds, as JUnit XML to this file");
   verb->add_option(
@@ -132,8 +132,8 @@ void AddExperimentVerb(CLI::App* app, ExperimentOptions* options) {
 
 int RunExperimentVerb(const ExperimentOptions& options, const std::function<bool()>& cancelled) {
   if (options.file.empty() && options.only_hashes) {
-    std::cout << FilesLine(evaluation::ConfigurationHash(options.report.package_folder));
-    return kExitRecommended;
+    std::cout << FilesLine(reports::ConfigurationHash(options.report.package_folder));
+    return cli::kExitRecommended;
   }
   if (options.file.empty()) {
     throw base::ConfigError(
@@ -144,30 +144,30 @@ int RunExperimentVerb(const ExperimentOptions& options, const std::function<bool
         "experiment hypothesis --help)");
   }
   const std::string file = ExperimentPath(options);
-  const evaluation::ExperimentConfig config =
-      evaluation::ReadExperiment(file, OverridesOf(options));
+  const ExperimentConfig config =
+      ReadExperiment(file, OverridesOf(options));
   if (options.only_hashes) {
-    std::cout << HeadText(evaluation::UnplayedReport(config));
-    return kExitRecommended;
+    std::cout << HeadText(UnplayedReport(config));
+    return cli::kExitRecommended;
   }
   CheckWritable(options.csv);
-  if (!options.junit.empty()) evaluation::RequireFolderOf(options.junit);
-  CheckReport(options.report);
-  const ReportOrigin origin = OriginOf(options, file, config);
-  const base::Crew crew = MakeCrew(options.threads, options.quiet, cancelled);
+  if (!options.junit.empty()) reports::RequireFolderOf(options.junit);
+  cli::CheckReport(options.report);
+  const cli::ReportOrigin origin = OriginOf(options, file, config);
+  const base::Crew crew = cli::MakeCrew(options.threads, options.quiet, cancelled);
   std::optional<knowledge::ExperienceStore> experiences = ExperiencesOf(options, config);
-  evaluation::OnExperience on_experience;
+  OnExperience on_experience;
   if (experiences) on_experience = [&](const auto& batch) { experiences->Write(batch); };
-  const std::optional<evaluation::ExperimentReport> report =
-      evaluation::RunExperiment(config, crew, on_experience);
+  const std::optional<ExperimentReport> report =
+      RunExperiment(config, crew, on_experience);
   if (crew.on_progress) std::cerr << "\r\033[K";
-  if (!report) return kExitCancelled;
+  if (!report) return cli::kExitCancelled;
   Print(*report);
   if (experiences) experiences->Finish();
-  if (!options.csv.empty()) base::ReplaceTextFile(options.csv, evaluation::ReportCsv(*report));
+  if (!options.csv.empty()) base::ReplaceTextFile(options.csv, ReportCsv(*report));
   if (!options.junit.empty()) base::ReplaceTextFile(options.junit, JunitXml(*report));
-  WriteReport(options.report, origin, ToJson(*report));
-  return report->passed() ? kExitRecommended : kExitAllFailed;
+  cli::WriteReport(options.report, origin, ToJson(*report));
+  return report->passed() ? cli::kExitRecommended : cli::kExitAllFailed;
 }
 
-}  // namespace hires::cli
+}  // namespace hires::lab

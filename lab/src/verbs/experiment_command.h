@@ -19,12 +19,12 @@ namespace CLI {
 class App;
 }
 
-namespace hires::cli {
+namespace hires::lab {
 
 /// What was typed behind `hires experiment`.
 struct ExperimentOptions {
   std::string file, map, csv, junit, experiences;
-  ReportOptions report;
+  cli::ReportOptions report;
   std::uint64_t seed{0};
   int threads{0}, runs{0};
   bool quiet{false}, only_hashes{false};
@@ -51,4 +51,4 @@ int RunExperimentVerb(const ExperimentOptions& options, const std::function<bool
 /// @param hash  by evaluation::ConfigurationHash.
 std::string FilesLine(const std::string& hash);
 
-}  // namespace hires::cli
+}  // namespace hires::lab

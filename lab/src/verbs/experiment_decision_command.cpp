@@ -22,13 +22,9 @@
 #include "lab/src/decision/decision_report.h"
 #include "reports/report_json.h"
 
-namespace hires::cli {
+namespace hires::lab {
 namespace {
 
-using evaluation::DecisionPiece;
-using evaluation::DecisionRecord;
-using evaluation::DecisionTask;
-using evaluation::HasArm;
 
 constexpr char kOperator[] = "move_base_param";
 constexpr char kParameter[] = "motion_set";
@@ -40,13 +36,13 @@ std::string JournalPath(const DecisionOptions& options) {
 
 /// Who decides, in the order of the table.
 std::vector<std::string> ArmsOf(const DecisionOptions& options) {
-  if (options.arms.empty()) return evaluation::AllArms();
+  if (options.arms.empty()) return AllArms();
   std::vector<std::string> wanted = base::Split(options.arms, ','), arms;
   for (const std::string& arm : wanted) {
-    if (HasArm(evaluation::AllArms(), arm)) continue;
-    throw base::ConfigError("--arms: " + base::UnknownName("arm", arm, evaluation::AllArms()));
+    if (HasArm(AllArms(), arm)) continue;
+    throw base::ConfigError("--arms: " + base::UnknownName("arm", arm, AllArms()));
   }
-  for (const std::string& arm : evaluation::AllArms()) {
+  for (const std::string& arm : AllArms()) {
     if (HasArm(wanted, arm)) arms.push_back(arm);
   }
   return arms;
@@ -65,24 +61,24 @@ std::string DefaultMotionSet(const planning::OperatorData& operators) {
 /// Everything that all tasks share.
 struct Stage {
   Stage(const DecisionOptions& options, const std::string& package_folder)
-      : config(evaluation::ReadDecisionConfig(package_folder + "/lab/config/decision.yaml")),
+      : config(ReadDecisionConfig(package_folder + "/lab/config/decision.yaml")),
         setup(package_folder + "/config/loop.yaml"),
         truth(setup.ReadTruth(options.truth)) {
     setting.truth = truth.name;
     setting.seed = options.seed;
     setting.arms = ArmsOf(options);
-    setting.files = evaluation::ConfigurationHash(package_folder);
+    setting.files = reports::ConfigurationHash(package_folder);
     setting.default_motion_set = DefaultMotionSet(setup.operators());
   }
 
-  evaluation::DecisionConfig config;
-  evaluation::DecisionSetting setting;
+  DecisionConfig config;
+  DecisionSetting setting;
   loop::LoopSetup setup;
-  evaluation::Truth truth;
+  sim_robot::Truth truth;
 };
 
-evaluation::DecisionParts PartsOf(const Stage& stage, const std::function<bool()>& cancelled) {
-  evaluation::DecisionParts parts{stage.setup.world(), stage.setup.imagination().scheduler};
+DecisionParts PartsOf(const Stage& stage, const std::function<bool()>& cancelled) {
+  DecisionParts parts{stage.setup.world(), stage.setup.imagination().scheduler};
   parts.oracle_plays = stage.config.oracle_plays;
   parts.cancelled = cancelled;
   parts.play = [&stage, cancelled](const DecisionTask& task, const std::string& set,
@@ -92,17 +88,17 @@ evaluation::DecisionParts PartsOf(const Stage& stage, const std::function<bool()
   return parts;
 }
 
-evaluation::DecisionNeeds NeedsOf(const Stage& stage) {
+DecisionNeeds NeedsOf(const Stage& stage) {
   const std::vector<std::string>& arms = stage.setting.arms;
   return {stage.setting.truth,
-          HasArm(arms, evaluation::kImaginationArm) || HasArm(arms, evaluation::kDissertationArm),
-          HasArm(arms, evaluation::kOracleArm)};
+          HasArm(arms, kImaginationArm) || HasArm(arms, kDissertationArm),
+          HasArm(arms, kOracleArm)};
 }
 
 std::vector<DecisionTask> TasksOf(const Stage& stage, const DecisionOptions& options) {
   std::vector<DecisionTask> tasks;
   for (int number = 1; number <= options.runs; ++number) {
-    tasks.push_back(evaluation::DrawTask(stage.config, options.seed, number));
+    tasks.push_back(DrawTask(stage.config, options.seed, number));
   }
   return tasks;
 }
@@ -116,7 +112,7 @@ class Shown {
     if (quiet_) return;
     const std::lock_guard<std::mutex> lock(mutex_);
     const double share = static_cast<double>(++done_) / static_cast<double>(all_);
-    std::cerr << '\r' << ProgressText(share, base::SteadyNow() - begin_) << "\033[K" << std::flush;
+    std::cerr << '\r' << cli::ProgressText(share, base::SteadyNow() - begin_) << "\033[K" << std::flush;
   }
 
  private:
@@ -129,8 +125,8 @@ class Shown {
 
 /// @return false when cancelled.
 bool PlayAll(const std::vector<DecisionPiece>& pieces, const Stage& stage,
-             const evaluation::DecisionParts& parts, const DecisionOptions& options,
-             evaluation::DecisionJournal* journal) {
+             const DecisionParts& parts, const DecisionOptions& options,
+             DecisionJournal* journal) {
   Shown shown(options.quiet, pieces.size());
   base::Crew crew;
   crew.threads = options.threads;
@@ -161,13 +157,13 @@ void AddDecisionVerb(CLI::App* experiment, DecisionOptions* options) {
                    "what robot and world are really like, a name of config/truths or a file; "
                    "default: same, the model of imagination itself");
   verb->add_option("--runs", options->runs, "tasks; default: 400")
-      ->check(NumberBetween(1, 1000000));
+      ->check(cli::NumberBetween(1, 1000000));
   verb->add_option("--arms", options->arms,
                    "of imagination, always_slow, always_fast, domain_default, dissertation, "
                    "oracle, with commas between; default: all");
-  verb->add_option("--seed", options->seed, "of all chance; default: 1")->check(WholeNumber());
+  verb->add_option("--seed", options->seed, "of all chance; default: 1")->check(cli::WholeNumber());
   verb->add_option("--threads", options->threads, "that play tasks; changes no number; default: 2")
-      ->check(NumberBetween(1, 256));
+      ->check(cli::NumberBetween(1, 256));
   verb->add_option(
       "--resume", options->journal,
       "keep what was played in this file, and go on with what is there; default: "
@@ -181,28 +177,28 @@ void AddDecisionVerb(CLI::App* experiment, DecisionOptions* options) {
 int RunDecisionVerb(const DecisionOptions& options, const std::string& package_folder,
                     const std::function<bool()>& cancelled) {
   for (const std::string& path : {JournalPath(options), options.json}) {
-    if (!path.empty()) evaluation::RequireFolderOf(path);
+    if (!path.empty()) reports::RequireFolderOf(path);
   }
   const Stage stage(options, package_folder);
-  const evaluation::DecisionParts parts = PartsOf(stage, cancelled);
-  const evaluation::DecisionNeeds needs = NeedsOf(stage);
+  const DecisionParts parts = PartsOf(stage, cancelled);
+  const DecisionNeeds needs = NeedsOf(stage);
   const std::vector<DecisionTask> tasks = TasksOf(stage, options);
-  evaluation::DecisionJournal journal(JournalPath(options), options.seed, stage.setting.files);
+  DecisionJournal journal(JournalPath(options), options.seed, stage.setting.files);
   if (!PlayAll(journal.Missing(tasks, needs, parts), stage, parts, options, &journal)) {
     std::cerr << fmt::format(
         "what was played is kept in {}; the same command goes on with it:\n{}\n",
         JournalPath(options), CommandOf(options));
-    return kExitCancelled;
+    return cli::kExitCancelled;
   }
   std::vector<DecisionRecord> records;
   for (const DecisionTask& task : tasks) records.push_back(journal.RecordOf(task, needs, parts));
-  const evaluation::DecisionReport report = evaluation::SumUpDecisions(
+  const DecisionReport report = SumUpDecisions(
       stage.setting, std::move(records), stage.setup.imagination().scheduler.criteria.prices);
-  std::cout << evaluation::DecisionText(report) << FilesLine(report.setting.files);
+  std::cout << DecisionText(report) << FilesLine(report.setting.files);
   if (!options.json.empty()) {
-    evaluation::WriteJson(ToJson(report, CommandOf(options)), options.json);
+    reports::WriteJson(ToJson(report, CommandOf(options)), options.json);
   }
-  return kExitRecommended;
+  return cli::kExitRecommended;
 }
 
-}  // namespace hires::cli
+}  // namespace hires::lab

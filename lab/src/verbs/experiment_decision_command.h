@@ -8,7 +8,7 @@ namespace CLI {
 class App;
 }
 
-namespace hires::cli {
+namespace hires::lab {
 
 /// What was typed behind `hires experiment decision`.
 struct DecisionOptions {
@@ -28,4 +28,4 @@ void AddDecisionVerb(CLI::App* experiment, DecisionOptions* options);
 int RunDecisionVerb(const DecisionOptions& options, const std::string& package_folder,
                     const std::function<bool()>& cancelled);
 
-}  // namespace hires::cli
+}  // namespace hires::lab

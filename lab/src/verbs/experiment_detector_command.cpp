@@ -21,7 +21,7 @@
 #include "hires/imagination/imagination_setup.h"
 #include "hires/robot/load_robot.h"
 
-namespace hires::cli {
+namespace hires::lab {
 namespace {
 
 /// Which file, and what stood in it; not where it lay.
@@ -38,17 +38,17 @@ void AddDetectorFitVerb(CLI::App* experiment, DetectorFitOptions* o) {
   CLI::App* verb = experiment->add_subcommand(
       "detector", "how the recogniser errs, fitted for the quick detector of rollouts");
   verb->add_option("--tables", o->tables, "how many; each has 1 to 8 things and is looked at twice")
-      ->check(NumberBetween(1, 1000000));
+      ->check(cli::NumberBetween(1, 1000000));
   verb->add_option("--held-out", o->held_out, "how many more, to try the fit on")
-      ->check(NumberBetween(1, 1000000));
+      ->check(cli::NumberBetween(1, 1000000));
   verb->add_option("--seed", o->seed, "of the first table; each next one has the next")
-      ->check(WholeNumber());
+      ->check(cli::WholeNumber());
   verb->add_option("--objects", o->objects, "another catalogue of objects (YAML)");
   verb->add_option("--config", o->config, "another file instead of config/recogniser.yaml");
   verb->add_option("--output", o->output, "write a file like config/detector.yaml");
   verb->add_option("--json", o->json, "write the numbers to this file");
   verb->add_option("--threads", o->threads, "default: one per core; changes no number")
-      ->check(NumberBetween(1, 256));
+      ->check(cli::NumberBetween(1, 256));
   verb->add_flag("--quiet", o->quiet, "no progress bar");
   o->verb = verb;
 }
@@ -56,8 +56,8 @@ void AddDetectorFitVerb(CLI::App* experiment, DetectorFitOptions* o) {
 int RunDetectorFitVerb(const DetectorFitOptions& options, const std::string& package_folder,
                        const std::function<bool()>& cancelled) {
   for (const std::string& file : {options.output, options.json})
-    if (!file.empty()) evaluation::RequireFolderOf(file);
-  evaluation::DetectorFitOrder order;
+    if (!file.empty()) reports::RequireFolderOf(file);
+  DetectorFitOrder order;
   order.tables = options.tables;
   order.held_out = options.held_out;
   order.seed = options.seed;
@@ -66,18 +66,18 @@ int RunDetectorFitVerb(const DetectorFitOptions& options, const std::string& pac
   const std::string config =
       options.config.empty() ? package_folder + "/config/recogniser.yaml" : options.config;
   order.recogniser = perception::ReadRecogniserConfig(config, options.objects);
-  const std::string files = evaluation::ConfigurationHash(package_folder);
-  const base::Crew crew = MakeCrew(options.threads, options.quiet, cancelled);
-  auto report = evaluation::FitDetector(order, crew);
+  const std::string files = reports::ConfigurationHash(package_folder);
+  const base::Crew crew = cli::MakeCrew(options.threads, options.quiet, cancelled);
+  auto report = FitDetector(order, crew);
   if (crew.on_progress) std::cerr << "\r\033[K";
-  if (!report) return kExitCancelled;
+  if (!report) return cli::kExitCancelled;
   report->objects = NameAndHash(order.recogniser.objects);
   report->recogniser = NameAndHash(config);
-  std::cout << evaluation::ReportText(*report) << FilesLine(files);
-  if (!options.json.empty()) evaluation::WriteJson(evaluation::ToJson(*report), options.json);
-  if (!options.output.empty()) base::ReplaceTextFile(options.output, evaluation::ToYaml(*report));
-  SaySaved({options.json, options.output});
-  return kExitRecommended;
+  std::cout << ReportText(*report) << FilesLine(files);
+  if (!options.json.empty()) reports::WriteJson(ToJson(*report), options.json);
+  if (!options.output.empty()) base::ReplaceTextFile(options.output, ToYaml(*report));
+  cli::SaySaved({options.json, options.output});
+  return cli::kExitRecommended;
 }
 
-}  // namespace hires::cli
+}  // namespace hires::lab

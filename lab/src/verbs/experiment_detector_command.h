@@ -8,7 +8,7 @@ namespace CLI {
 class App;
 }
 
-namespace hires::cli {
+namespace hires::lab {
 
 /// What was typed behind `hires experiment detector`.
 struct DetectorFitOptions {
@@ -28,4 +28,4 @@ void AddDetectorFitVerb(CLI::App* experiment, DetectorFitOptions* options);
 int RunDetectorFitVerb(const DetectorFitOptions& options, const std::string& package_folder,
                        const std::function<bool()>& cancelled);
 
-}  // namespace hires::cli
+}  // namespace hires::lab

@@ -23,7 +23,7 @@
 #include "reports/report_json.h"
 #include "reports/timeline.h"
 
-namespace hires::cli {
+namespace hires::lab {
 namespace {
 
 namespace fs = std::filesystem;
@@ -37,9 +37,9 @@ std::string JournalPath(const HypothesisOptions& options) {
 
 void RequireFolders(const HypothesisOptions& options) {
   for (const std::string& path : {JournalPath(options), options.csv}) {
-    if (!path.empty()) evaluation::RequireFolderOf(path);
+    if (!path.empty()) reports::RequireFolderOf(path);
   }
-  CheckReport(options.report);
+  cli::CheckReport(options.report);
   if (options.logs.empty()) return;
   std::error_code error;
   fs::create_directories(options.logs, error);
@@ -50,7 +50,7 @@ void RequireFolders(const HypothesisOptions& options) {
 }
 
 /// A task that takes `time_limit` at this pace must fit into a run.
-void CheckLimits(const evaluation::HypothesisGoal& goal, double pace, const std::string& path) {
+void CheckLimits(const HypothesisGoal& goal, double pace, const std::string& path) {
   if (pace <= 0.0 || goal.start_limit + goal.time_limit / pace <= goal.wall_limit) return;
   throw base::ConfigError(fmt::format(
       "--pace {:g}: {:g} s simulated take {:g} s, with {:g} s to start more than wall_limit, {:g} "
@@ -58,15 +58,15 @@ void CheckLimits(const evaluation::HypothesisGoal& goal, double pace, const std:
       pace, goal.time_limit, goal.time_limit / pace, goal.start_limit, goal.wall_limit, path));
 }
 
-evaluation::HypothesisSetting SettingOf(const HypothesisOptions& options,
+HypothesisSetting SettingOf(const HypothesisOptions& options,
                                         const std::string& package_folder) {
-  evaluation::HypothesisSetting setting;
+  HypothesisSetting setting;
   setting.scenario = options.scenario;
   setting.runs = options.runs;
   setting.seed = options.seed;
   setting.pace = options.is_local ? 0.0 : options.pace;
   setting.workers = options.workers;
-  setting.files = evaluation::ConfigurationHash(package_folder);
+  setting.files = reports::ConfigurationHash(package_folder);
   setting.is_local = options.is_local;
   setting.truth = options.truth;
   return setting;
@@ -74,28 +74,28 @@ evaluation::HypothesisSetting SettingOf(const HypothesisOptions& options,
 
 std::string CommandOf(const HypothesisOptions& options) {
   const std::string how =
-      options.is_local ? fmt::format("--local --truth {}", Quoted(options.truth))
+      options.is_local ? fmt::format("--local --truth {}", cli::Quoted(options.truth))
                        : fmt::format("--pace {:g} --workers {}", options.pace, options.workers);
   return fmt::format("hires experiment hypothesis --scenario {} --runs {} --seed {} {} --resume {}",
-                     Quoted(options.scenario), options.runs, options.seed, how,
-                     Quoted(JournalPath(options)));
+                     cli::Quoted(options.scenario), options.runs, options.seed, how,
+                     cli::Quoted(JournalPath(options)));
 }
 
 std::string Arm(bool imagines) { return imagines ? "with" : "without"; }
 
 /// All that the journal lacks, pair after pair.
-std::vector<evaluation::HypothesisOrder> OrdersFor(const HypothesisOptions& options,
-                                                   const evaluation::HypothesisGoal& goal,
-                                                   const evaluation::HypothesisJournal& journal) {
-  std::vector<evaluation::HypothesisOrder> orders;
+std::vector<HypothesisOrder> OrdersFor(const HypothesisOptions& options,
+                                                   const HypothesisGoal& goal,
+                                                   const HypothesisJournal& journal) {
+  std::vector<HypothesisOrder> orders;
   for (int run = 1; run <= options.runs; ++run) {
     for (const bool imagines : {true, false}) {
       if (journal.Has(run, imagines)) continue;
-      evaluation::HypothesisOrder order;
+      HypothesisOrder order;
       order.scenario = options.scenario;
       order.run = run;
       order.imagines = imagines;
-      order.seed = evaluation::SeedOfRun(options.seed, run);
+      order.seed = SeedOfRun(options.seed, run);
       order.pace = options.pace;
       order.workers = options.workers;
       order.goal = goal;
@@ -109,8 +109,8 @@ std::vector<evaluation::HypothesisOrder> OrdersFor(const HypothesisOptions& opti
 }
 
 /// A record that can be trusted to be of this order, by whichever process it was played.
-evaluation::HypothesisRun Stamped(evaluation::HypothesisRun record,
-                                  const evaluation::HypothesisOrder& order, double wall_seconds) {
+HypothesisRun Stamped(HypothesisRun record,
+                                  const HypothesisOrder& order, double wall_seconds) {
   record.run = order.run;
   record.imagines = order.imagines;
   record.seed = order.seed;
@@ -123,7 +123,7 @@ double SecondsSince(Steady::time_point begin) {
   return std::chrono::duration<double>(Steady::now() - begin).count();
 }
 
-std::string DoneLine(const evaluation::HypothesisRun& run, int num_runs) {
+std::string DoneLine(const HypothesisRun& run, int num_runs) {
   return fmt::format("run {} of {} {} imagination: {}: {}; {:.0f} s simulated, {:.0f} s", run.run,
                      num_runs, Arm(run.imagines), run.outcome,
                      run.is_complete ? run.verdict : run.reason, run.duration, run.wall_seconds);
@@ -133,16 +133,16 @@ std::string DoneLine(const evaluation::HypothesisRun& run, int num_runs) {
 class Keeper {
  public:
   Keeper(std::size_t num_orders, const HypothesisOptions& options,
-         evaluation::HypothesisJournal* journal)
+         HypothesisJournal* journal)
       : num_orders_(num_orders), options_(options), journal_(*journal) {}
 
-  void Take(evaluation::HypothesisRun record) {
+  void Take(HypothesisRun record) {
     const std::lock_guard<std::mutex> lock(mutex_);
     journal_.Append(std::move(record));
     if (options_.quiet) return;
     const double fraction = static_cast<double>(++num_done_) / static_cast<double>(num_orders_);
     std::cerr << DoneLine(journal_.runs().back(), options_.runs) << '\n'
-              << ProgressText(fraction, SecondsSince(begin_)) << std::endl;
+              << cli::ProgressText(fraction, SecondsSince(begin_)) << std::endl;
   }
 
  private:
@@ -150,15 +150,15 @@ class Keeper {
   const HypothesisOptions& options_;
   const Steady::time_point begin_{Steady::now()};
   std::mutex mutex_;
-  evaluation::HypothesisJournal& journal_;  // guarded
+  HypothesisJournal& journal_;  // guarded
   std::size_t num_done_{0};                 // guarded
 };
 
 /// @return false when cancelled.
-bool PlayOne(const evaluation::HypothesisOrder& order, const evaluation::PlayHypothesis& play,
+bool PlayOne(const HypothesisOrder& order, const PlayHypothesis& play,
              const std::function<bool()>& cancelled, Keeper* keeper) {
   const auto begin = Steady::now();
-  std::optional<evaluation::HypothesisRun> record;
+  std::optional<HypothesisRun> record;
   if (!cancelled()) record = play(order, cancelled);
   if (record) keeper->Take(Stamped(*std::move(record), order, SecondsSince(begin)));
   return record.has_value();
@@ -166,9 +166,9 @@ bool PlayOne(const evaluation::HypothesisOrder& order, const evaluation::PlayHyp
 
 /// A whole system each has the computer to itself; runs in this process share its cores.
 /// @return false when cancelled.
-bool PlayAll(const std::vector<evaluation::HypothesisOrder>& orders,
-             const HypothesisOptions& options, const evaluation::PlayHypothesis& play,
-             const std::function<bool()>& cancelled, evaluation::HypothesisJournal* journal) {
+bool PlayAll(const std::vector<HypothesisOrder>& orders,
+             const HypothesisOptions& options, const PlayHypothesis& play,
+             const std::function<bool()>& cancelled, HypothesisJournal* journal) {
   Keeper keeper(orders.size(), options, journal);
   if (!options.is_local) {
     return std::all_of(orders.begin(), orders.end(),
@@ -183,30 +183,30 @@ bool PlayAll(const std::vector<evaluation::HypothesisOrder>& orders,
       });
 }
 
-ReportOrigin OriginOf(const HypothesisOptions& options, const std::string& goal,
+cli::ReportOrigin OriginOf(const HypothesisOptions& options, const std::string& goal,
                       const std::string& package_folder) {
-  ReportOrigin origin;
+  cli::ReportOrigin origin;
   origin.verb = "experiment hypothesis";
   origin.is_local = options.is_local;
-  if (!IsWanted(options.report)) return origin;
+  if (!cli::IsWanted(options.report)) return origin;
   origin.inputs = {{"scenario", package_folder + "/config/scenarios/" + options.scenario + ".yaml"},
                    {"what counts", goal}};
   return origin;
 }
 
-void Write(const evaluation::HypothesisReport& report, const HypothesisOptions& options,
-           ReportOrigin origin) {
-  std::cout << evaluation::HypothesisText(report) << FilesLine(report.setting.files);
-  if (!options.csv.empty()) base::ReplaceTextFile(options.csv, evaluation::HypothesisCsv(report));
+void Write(const HypothesisReport& report, const HypothesisOptions& options,
+           cli::ReportOrigin origin) {
+  std::cout << HypothesisText(report) << FilesLine(report.setting.files);
+  if (!options.csv.empty()) base::ReplaceTextFile(options.csv, HypothesisCsv(report));
   origin.hashes = {{"files", report.setting.files}};
-  WriteReport(options.report, origin, ToJson(report, CommandOf(options)));
+  cli::WriteReport(options.report, origin, ToJson(report, CommandOf(options)));
 }
 
-int Cancelled(const evaluation::HypothesisJournal& journal, const HypothesisOptions& options) {
+int Cancelled(const HypothesisJournal& journal, const HypothesisOptions& options) {
   std::cerr << fmt::format(
       "{} of {} runs are kept in {}; the same command goes on with them:\n{}\n",
       journal.runs().size(), 2 * options.runs, JournalPath(options), CommandOf(options));
-  return kExitCancelled;
+  return cli::kExitCancelled;
 }
 
 }  // namespace
@@ -217,13 +217,13 @@ void AddHypothesisVerb(CLI::App* experiment, HypothesisOptions* options) {
                                               "without imagination, on equal hidden truths");
   verb->add_option("--scenario", options->scenario, "topple or serve_coffee")->required();
   verb->add_option("--runs", options->runs, "with imagination, and as many without; default: 20")
-      ->check(NumberBetween(1, 100000));
+      ->check(cli::NumberBetween(1, 100000));
   verb->add_option("--pace", options->pace,
                    "simulated seconds of the robot per second, 0: as fast as it can; default: 1")
-      ->check(NumberBetween(0.0, 1000.0));
-  verb->add_option("--seed", options->seed, "of all chance; default: 1")->check(WholeNumber());
+      ->check(cli::NumberBetween(0.0, 1000.0));
+  verb->add_option("--seed", options->seed, "of all chance; default: 1")->check(cli::WholeNumber());
   verb->add_option("--workers", options->workers, "simulators that imagine; default: 1")
-      ->check(NumberBetween(1, 64));
+      ->check(cli::NumberBetween(1, 64));
   verb->add_option("--resume", options->journal,
                    "keep finished runs in this file, and go on with those that are there; default: "
                    "beside --json, else hypothesis_<scenario>.journal here");
@@ -237,20 +237,20 @@ void AddHypothesisVerb(CLI::App* experiment, HypothesisOptions* options) {
       ->needs(local);
   verb->add_option("--threads", options->threads,
                    "with --local: that play runs; changes no number; default: 2")
-      ->check(NumberBetween(1, 256))
+      ->check(cli::NumberBetween(1, 256))
       ->needs(local);
   verb->add_option("--csv", options->csv, "write one line per run to this file");
-  AddReportOptions(verb, &options->report);
+  cli::AddReportOptions(verb, &options->report);
   verb->add_option("--logs", options->logs, "keep what the system of each run said in this folder");
   verb->add_flag("--quiet", options->quiet, "no progress");
   options->verb = verb;
 }
 
 int RunHypothesisVerb(const HypothesisOptions& options, const std::string& package_folder,
-                      const evaluation::PlayHypothesis& play,
+                      const PlayHypothesis& play,
                       const std::function<bool()>& cancelled) {
   const std::string path = package_folder + "/lab/config/hypothesis.yaml";
-  const evaluation::HypothesisGoal goal = evaluation::ReadHypothesisGoal(path, options.scenario);
+  const HypothesisGoal goal = ReadHypothesisGoal(path, options.scenario);
   if (!options.is_local) CheckLimits(goal, options.pace, path);
   if (!options.is_local && !play) {
     throw base::ConfigError(
@@ -263,21 +263,21 @@ int RunHypothesisVerb(const HypothesisOptions& options, const std::string& packa
   if (options.is_local) {
     setup.emplace(package_folder + "/config/loop.yaml");
   }
-  evaluation::HypothesisSetting setting = SettingOf(options, package_folder);
+  HypothesisSetting setting = SettingOf(options, package_folder);
   // An unknown one is refused before anything is played.
   if (setup) setting.truth = setup->ReadTruth(options.truth).name;
-  const ReportOrigin origin = OriginOf(options, path, package_folder);
-  evaluation::HypothesisJournal journal(JournalPath(options), setting);
+  const cli::ReportOrigin origin = OriginOf(options, path, package_folder);
+  HypothesisJournal journal(JournalPath(options), setting);
   const auto orders = OrdersFor(options, goal, journal);
-  const evaluation::PlayHypothesis play_locally = [&](const auto& order, const auto& cancel) {
+  const PlayHypothesis play_locally = [&](const auto& order, const auto& cancel) {
     return PlayHypothesisLocally(*setup, package_folder, options.truth, order, cancel);
   };
   if (!PlayAll(orders, options, setup ? play_locally : play, cancelled, &journal)) {
     return Cancelled(journal, options);
   }
-  const evaluation::HypothesisReport report = evaluation::SumUpHypothesis(setting, journal.runs());
+  const HypothesisReport report = SumUpHypothesis(setting, journal.runs());
   Write(report, options, origin);
-  return report.with.complete + report.without.complete > 0 ? kExitRecommended : kExitAllFailed;
+  return report.with.complete + report.without.complete > 0 ? cli::kExitRecommended : cli::kExitAllFailed;
 }
 
-}  // namespace hires::cli
+}  // namespace hires::lab

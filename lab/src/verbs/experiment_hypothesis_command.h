@@ -12,12 +12,12 @@ namespace CLI {
 class App;
 }
 
-namespace hires::cli {
+namespace hires::lab {
 
 /// What was typed behind `hires experiment hypothesis`.
 struct HypothesisOptions {
   std::string scenario, journal, csv, logs;
-  ReportOptions report;
+  cli::ReportOptions report;
   int runs{20}, workers{1};
   std::uint64_t seed{1};
   double pace{1.0};
@@ -36,7 +36,7 @@ void AddHypothesisVerb(CLI::App* experiment, HypothesisOptions* options);
 /// @return kExitRecommended when all runs were played, kExitAllFailed when each of them broke down,
 /// kExitCancelled.  @throws base::ConfigError for bad input, before anything is played.
 int RunHypothesisVerb(const HypothesisOptions& options, const std::string& package_folder,
-                      const evaluation::PlayHypothesis& play,
+                      const PlayHypothesis& play,
                       const std::function<bool()>& cancelled);
 
-}  // namespace hires::cli
+}  // namespace hires::lab

@@ -14,10 +14,10 @@
 #include "reports/report_json.h"
 #include "loop/task_loop.h"
 
-namespace hires::cli {
+namespace hires::lab {
 namespace {
 
-evaluation::LadderClocks ClocksOfThisComputer() {
+LadderClocks ClocksOfThisComputer() {
   return {[] {
             const auto now = std::chrono::steady_clock::now().time_since_epoch();
             return std::chrono::duration<double>(now).count();
@@ -41,22 +41,22 @@ void AddLadderVerb(CLI::App* experiment, LadderOptions* o) {
   CLI::App* verb = experiment->add_subcommand(
       "ladder", "how fast what is simulated: the steps of the dissertation, and ours");
   verb->add_option("--seconds", o->seconds, "about so long, 90 if not said; more is more exact")
-      ->check(NumberBetween(1.0, 86400.0));
+      ->check(cli::NumberBetween(1.0, 86400.0));
   verb->add_option("--repeats", o->repeats, "of each measurement, at most; 5 if not said")
-      ->check(NumberBetween(2, 1000));
-  verb->add_option("--seed", o->seed, "of all that is played")->check(WholeNumber());
+      ->check(cli::NumberBetween(2, 1000));
+  verb->add_option("--seed", o->seed, "of all that is played")->check(cli::WholeNumber());
   verb->add_option("--json", o->json, "write the numbers to this file");
   verb->add_option("--threads", o->threads, "that count as all cores; default: one per core")
-      ->check(NumberBetween(1, 256));
+      ->check(cli::NumberBetween(1, 256));
   verb->add_flag("--quiet", o->quiet, "no progress bar");
   o->verb = verb;
 }
 
 int RunLadderVerb(const LadderOptions& options, const std::string& package_folder,
                   const std::function<bool()>& cancelled) {
-  if (!options.json.empty()) evaluation::RequireFolderOf(options.json);
+  if (!options.json.empty()) reports::RequireFolderOf(options.json);
   const loop::LoopSetup loop(package_folder + "/config/loop.yaml");
-  evaluation::LadderOrder order;
+  LadderOrder order;
   order.package_folder = package_folder;
   order.seconds = options.seconds;
   order.repeats = options.repeats;
@@ -65,13 +65,13 @@ int RunLadderVerb(const LadderOptions& options, const std::string& package_folde
   order.play_task = [&](std::uint64_t seed) {
     return PlayTopple(loop, package_folder, seed, cancelled);
   };
-  const base::Crew crew = MakeCrew(options.threads, options.quiet, cancelled);
-  const auto report = evaluation::ClimbLadder(order, crew);
+  const base::Crew crew = cli::MakeCrew(options.threads, options.quiet, cancelled);
+  const auto report = ClimbLadder(order, crew);
   if (crew.on_progress) std::cerr << "\r\033[K";
-  if (!report) return kExitCancelled;
-  std::cout << evaluation::ReportText(*report);
-  if (!options.json.empty()) evaluation::WriteJson(evaluation::ToJson(*report), options.json);
-  return kExitRecommended;
+  if (!report) return cli::kExitCancelled;
+  std::cout << ReportText(*report);
+  if (!options.json.empty()) reports::WriteJson(ToJson(*report), options.json);
+  return cli::kExitRecommended;
 }
 
-}  // namespace hires::cli
+}  // namespace hires::lab

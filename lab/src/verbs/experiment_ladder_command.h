@@ -8,7 +8,7 @@ namespace CLI {
 class App;
 }
 
-namespace hires::cli {
+namespace hires::lab {
 
 /// What was typed behind `hires experiment ladder`.
 struct LadderOptions {
@@ -28,4 +28,4 @@ void AddLadderVerb(CLI::App* experiment, LadderOptions* options);
 int RunLadderVerb(const LadderOptions& options, const std::string& package_folder,
                   const std::function<bool()>& cancelled);
 
-}  // namespace hires::cli
+}  // namespace hires::lab

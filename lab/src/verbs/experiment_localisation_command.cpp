@@ -14,7 +14,7 @@
 #include "reports/report_json.h"
 #include "reports/timeline.h"
 
-namespace hires::cli {
+namespace hires::lab {
 
 void AddPoseErrorVerb(CLI::App* experiment, PoseErrorOptions* o) {
   CLI::App* verb = experiment->add_subcommand(
@@ -23,15 +23,15 @@ void AddPoseErrorVerb(CLI::App* experiment, PoseErrorOptions* o) {
                    "another file instead of lab/config/experiments/legs_world_filter.yaml: its world, "
                    "goals and filters");
   verb->add_option("--series", o->series, "how many, of as many legs as that file says")
-      ->check(NumberBetween(1, 10000));
+      ->check(cli::NumberBetween(1, 10000));
   verb->add_option("--held-out", o->held_out, "how many more, to try the fit on")
-      ->check(NumberBetween(1, 10000));
+      ->check(cli::NumberBetween(1, 10000));
   verb->add_option("--seed", o->seed, "of the first series; each next one has the next")
-      ->check(WholeNumber());
+      ->check(cli::WholeNumber());
   verb->add_option("--output", o->output, "write a file like config/localisation_error.yaml");
   verb->add_option("--json", o->json, "write the numbers to this file");
   verb->add_option("--threads", o->threads, "default: one per core; changes no number")
-      ->check(NumberBetween(1, 256));
+      ->check(cli::NumberBetween(1, 256));
   verb->add_flag("--quiet", o->quiet, "no progress bar");
   o->verb = verb;
 }
@@ -39,25 +39,25 @@ void AddPoseErrorVerb(CLI::App* experiment, PoseErrorOptions* o) {
 int RunPoseErrorVerb(const PoseErrorOptions& options, const std::string& package_folder,
                      const std::function<bool()>& cancelled) {
   for (const std::string& file : {options.output, options.json})
-    if (!file.empty()) evaluation::RequireFolderOf(file);
-  evaluation::ExperimentOverrides overrides;
+    if (!file.empty()) reports::RequireFolderOf(file);
+  ExperimentOverrides overrides;
   overrides.seed = options.seed;
-  evaluation::PoseErrorOrder order;
-  order.drives = evaluation::ReadExperiment(
+  PoseErrorOrder order;
+  order.drives = ReadExperiment(
       options.drives.empty() ? package_folder + "/lab/config/experiments/legs_world_filter.yaml"
                              : options.drives,
       overrides);
   order.series = options.series;
   order.held_out = options.held_out;
-  const std::string files = evaluation::ConfigurationHash(package_folder);
-  const base::Crew crew = MakeCrew(options.threads, options.quiet, cancelled);
-  const auto report = evaluation::FitPoseError(order, crew);
+  const std::string files = reports::ConfigurationHash(package_folder);
+  const base::Crew crew = cli::MakeCrew(options.threads, options.quiet, cancelled);
+  const auto report = FitPoseError(order, crew);
   if (crew.on_progress) std::cerr << "\r\033[K";
-  if (!report) return kExitCancelled;
-  std::cout << evaluation::ReportText(*report) << FilesLine(files);
-  if (!options.json.empty()) evaluation::WriteJson(evaluation::ToJson(*report), options.json);
-  if (!options.output.empty()) base::ReplaceTextFile(options.output, evaluation::ToYaml(*report));
-  return kExitRecommended;
+  if (!report) return cli::kExitCancelled;
+  std::cout << ReportText(*report) << FilesLine(files);
+  if (!options.json.empty()) reports::WriteJson(ToJson(*report), options.json);
+  if (!options.output.empty()) base::ReplaceTextFile(options.output, ToYaml(*report));
+  return cli::kExitRecommended;
 }
 
-}  // namespace hires::cli
+}  // namespace hires::lab

@@ -8,7 +8,7 @@ namespace CLI {
 class App;
 }
 
-namespace hires::cli {
+namespace hires::lab {
 
 /// What was typed behind `hires experiment localisation`.
 struct PoseErrorOptions {
@@ -28,4 +28,4 @@ void AddPoseErrorVerb(CLI::App* experiment, PoseErrorOptions* options);
 int RunPoseErrorVerb(const PoseErrorOptions& options, const std::string& package_folder,
                      const std::function<bool()>& cancelled);
 
-}  // namespace hires::cli
+}  // namespace hires::lab

@@ -19,7 +19,7 @@
 #include "hires/perception/pcd_file.h"
 #include "hires/robot/load_robot.h"
 
-namespace hires::cli {
+namespace hires::lab {
 
 void AddRecognitionVerb(CLI::App* experiment, RecognitionOptions* o) {
   CLI::App* verb = experiment->add_subcommand(
@@ -28,9 +28,9 @@ void AddRecognitionVerb(CLI::App* experiment, RecognitionOptions* o) {
       "is hidden. Exit codes: 0 all goals are met, 1 bad input, 2 one is missed, undecided or "
       "without a value, as with few tables (some 250 decide where nothing goes wrong)");
   verb->add_option("--tables", o->tables, "how many, default 500; each has 1 to 8 things")
-      ->check(NumberBetween(1, 1000000));
+      ->check(cli::NumberBetween(1, 1000000));
   verb->add_option("--seed", o->seed, "of the first table; each next one has the next")
-      ->check(WholeNumber());
+      ->check(cli::WholeNumber());
   verb->add_option("--objects", o->objects, "another catalogue of objects (YAML)");
   verb->add_option("--config", o->config, "another file instead of config/recogniser.yaml");
   verb->add_option("--json", o->json, "write the numbers to this file");
@@ -38,16 +38,16 @@ void AddRecognitionVerb(CLI::App* experiment, RecognitionOptions* o) {
                    "write each table's cloud to this folder, as table_SEED.pcd: something to try "
                    "`hires recognise` on");
   verb->add_option("--threads", o->threads, "default: one per core; changes no number but times")
-      ->check(NumberBetween(1, 256));
+      ->check(cli::NumberBetween(1, 256));
   verb->add_flag("--quiet", o->quiet, "no progress bar");
   o->verb = verb;
 }
 
 int RunRecognitionVerb(const RecognitionOptions& options, const std::string& package_folder,
                        const std::function<bool()>& cancelled) {
-  if (!options.json.empty()) evaluation::RequireFolderOf(options.json);
-  if (!options.clouds.empty()) evaluation::RequireFolder("--clouds", options.clouds);
-  evaluation::RecognitionOrder order;
+  if (!options.json.empty()) reports::RequireFolderOf(options.json);
+  if (!options.clouds.empty()) reports::RequireFolder("--clouds", options.clouds);
+  RecognitionOrder order;
   order.tables = options.tables;
   order.seed = options.seed;
   const auto scene = imagination::ReadSetupConfig(package_folder + "/config/scene.yaml");
@@ -60,19 +60,19 @@ int RunRecognitionVerb(const RecognitionOptions& options, const std::string& pac
       perception::WritePcd(cloud, fmt::format("{}/table_{}.pcd", options.clouds, seed));
     };
   }
-  const std::string files = evaluation::ConfigurationHash(package_folder);
-  const base::Crew crew = MakeCrew(options.threads, options.quiet, cancelled);
-  const auto report = evaluation::TryRecogniser(order, crew);
+  const std::string files = reports::ConfigurationHash(package_folder);
+  const base::Crew crew = cli::MakeCrew(options.threads, options.quiet, cancelled);
+  const auto report = TryRecogniser(order, crew);
   if (crew.on_progress) std::cerr << "\r\033[K";
-  if (!report) return kExitCancelled;
-  std::cout << evaluation::ReportText(*report) << FilesLine(files);
-  if (!options.json.empty()) evaluation::WriteJson(evaluation::ToJson(*report), options.json);
-  SaySaved({options.json});
-  if (evaluation::MeetsGoals(*report)) return kExitRecommended;
+  if (!report) return cli::kExitCancelled;
+  std::cout << ReportText(*report) << FilesLine(files);
+  if (!options.json.empty()) reports::WriteJson(ToJson(*report), options.json);
+  cli::SaySaved({options.json});
+  if (MeetsGoals(*report)) return cli::kExitRecommended;
   std::cout << fmt::format("exit code {}, as not all goals are met:\n{}",
-                           static_cast<int>(kExitAllFailed),
-                           evaluation::WhyGoalsAreNotMet(*report));
-  return kExitAllFailed;
+                           static_cast<int>(cli::kExitAllFailed),
+                           WhyGoalsAreNotMet(*report));
+  return cli::kExitAllFailed;
 }
 
-}  // namespace hires::cli
+}  // namespace hires::lab

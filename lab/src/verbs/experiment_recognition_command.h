@@ -8,7 +8,7 @@ namespace CLI {
 class App;
 }
 
-namespace hires::cli {
+namespace hires::lab {
 
 /// What was typed behind `hires experiment recognition`.
 struct RecognitionOptions {
@@ -28,4 +28,4 @@ void AddRecognitionVerb(CLI::App* experiment, RecognitionOptions* options);
 int RunRecognitionVerb(const RecognitionOptions& options, const std::string& package_folder,
                        const std::function<bool()>& cancelled);
 
-}  // namespace hires::cli
+}  // namespace hires::lab

@@ -12,30 +12,30 @@
 #include "lab/src/recognition/torso_poses.h"
 #include "reports/report_json.h"
 
-namespace hires::cli {
+namespace hires::lab {
 
 void AddTorsoPosesVerb(CLI::App* experiment, TorsoPosesOptions* o) {
   CLI::App* verb = experiment->add_subcommand(
       "torso_poses",
       "from which height and place things on a table are recognised and grasped best");
   verb->add_option("--looks", o->looks, "at each thing from each pose")
-      ->check(NumberBetween(1, 100000));
-  verb->add_option("--seed", o->seed, "of places, headings and noise")->check(WholeNumber());
+      ->check(cli::NumberBetween(1, 100000));
+  verb->add_option("--seed", o->seed, "of places, headings and noise")->check(cli::WholeNumber());
   verb->add_option("--stand", o->stand, "area at which the robot stands by default");
   verb->add_option("--area", o->area, "area on which the things stand");
   verb->add_option("--config", o->config, "another file instead of config/recogniser.yaml");
   verb->add_option("--json", o->json, "write the numbers to this file");
   verb->add_option("--threads", o->threads, "default: one per core; changes no number")
-      ->check(NumberBetween(1, 256));
+      ->check(cli::NumberBetween(1, 256));
   verb->add_flag("--quiet", o->quiet, "no progress bar");
   o->verb = verb;
 }
 
 int RunTorsoPosesVerb(const TorsoPosesOptions& options, const std::string& package_folder,
                       const std::function<bool()>& cancelled) {
-  if (!options.json.empty()) evaluation::RequireFolderOf(options.json);
+  if (!options.json.empty()) reports::RequireFolderOf(options.json);
   const auto scene = imagination::ReadSetupConfig(package_folder + "/config/scene.yaml");
-  evaluation::TorsoPosesOrder order;
+  TorsoPosesOrder order;
   order.recogniser = perception::ReadRecogniserConfig(
       options.config.empty() ? package_folder + "/config/recogniser.yaml" : options.config);
   order.setup = imagination::LoadImaginationSetup(scene);
@@ -43,14 +43,14 @@ int RunTorsoPosesVerb(const TorsoPosesOptions& options, const std::string& packa
   if (!options.area.empty()) order.area = options.area;
   order.looks = options.looks;
   order.seed = options.seed;
-  const std::string files = evaluation::ConfigurationHash(package_folder);
-  const base::Crew crew = MakeCrew(options.threads, options.quiet, cancelled);
-  const auto report = evaluation::PlayTorsoPoses(order, crew);
+  const std::string files = reports::ConfigurationHash(package_folder);
+  const base::Crew crew = cli::MakeCrew(options.threads, options.quiet, cancelled);
+  const auto report = PlayTorsoPoses(order, crew);
   if (crew.on_progress) std::cerr << "\r\033[K";
-  if (!report) return kExitCancelled;
-  std::cout << evaluation::ReportText(*report) << FilesLine(files);
-  if (!options.json.empty()) evaluation::WriteJson(evaluation::ToJson(*report), options.json);
-  return kExitRecommended;
+  if (!report) return cli::kExitCancelled;
+  std::cout << ReportText(*report) << FilesLine(files);
+  if (!options.json.empty()) reports::WriteJson(ToJson(*report), options.json);
+  return cli::kExitRecommended;
 }
 
-}  // namespace hires::cli
+}  // namespace hires::lab

@@ -8,7 +8,7 @@ namespace CLI {
 class App;
 }
 
-namespace hires::cli {
+namespace hires::lab {
 
 /// What was typed behind `hires experiment torso_poses`.
 struct TorsoPosesOptions {
@@ -27,4 +27,4 @@ void AddTorsoPosesVerb(CLI::App* experiment, TorsoPosesOptions* options);
 int RunTorsoPosesVerb(const TorsoPosesOptions& options, const std::string& package_folder,
                       const std::function<bool()>& cancelled);
 
-}  // namespace hires::cli
+}  // namespace hires::lab

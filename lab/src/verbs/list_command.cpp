@@ -16,7 +16,7 @@
 #include "reports/report_json.h"
 #include "lab/src/series/scenario_series.h"
 
-namespace hires::cli {
+namespace hires::lab {
 namespace {
 
 namespace fs = std::filesystem;
@@ -30,31 +30,31 @@ std::vector<fs::path> YamlFilesIn(const std::string& folder) {
   return files;
 }
 
-ListRows Experiments(const std::string& package_folder) {
-  ListRows rows;
+cli::ListRows Experiments(const std::string& package_folder) {
+  cli::ListRows rows;
   for (const fs::path& file : YamlFilesIn(package_folder + "/lab/config/experiments")) {
     rows.push_back({{"experiment", file.stem().string()},
-                    {"kind", KindName(evaluation::ReadExperiment(file))},
+                    {"kind", KindName(ReadExperiment(file))},
                     {"file", file.string()}});
   }
   return rows;
 }
 
-ListRows SeriesOfRuns(const std::string& package_folder) {
-  ListRows rows;
+cli::ListRows SeriesOfRuns(const std::string& package_folder) {
+  cli::ListRows rows;
   for (const fs::path& file : YamlFilesIn(package_folder + "/lab/config/series")) {
-    const evaluation::ScenarioSeries series = evaluation::ReadScenarioSeries(file);
+    const ScenarioSeries series = ReadScenarioSeries(file);
     std::vector<std::string> groups;
-    for (const evaluation::SeriesGroup& group : series.groups) groups.push_back(group.name);
+    for (const SeriesGroup& group : series.groups) groups.push_back(group.name);
     rows.push_back({{"series", series.name},
                     {"varies", groups},
-                    {"combinations", evaluation::NumCombinations(series)},
+                    {"combinations", NumCombinations(series)},
                     {"file", file.string()}});
   }
   return rows;
 }
 
-using Lister = std::function<ListRows(const std::string& package_folder)>;
+using Lister = std::function<cli::ListRows(const std::string& package_folder)>;
 
 const std::map<std::string, Lister>& Listers() {
   static const std::map<std::string, Lister> listers{{"experiments", Experiments},
@@ -84,9 +84,9 @@ int RunLabListVerb(const LabListOptions& options, const std::string& package_fol
   if (lister == Listers().end()) {
     throw base::ConfigError(base::UnknownName("list", options.what, Kinds()));
   }
-  if (!options.json.empty() && options.json != "-") evaluation::RequireFolderOf(options.json);
-  PrintList(options.what, lister->second(package_folder), options.json);
-  return kExitRecommended;
+  if (!options.json.empty() && options.json != "-") reports::RequireFolderOf(options.json);
+  cli::PrintList(options.what, lister->second(package_folder), options.json);
+  return cli::kExitRecommended;
 }
 
-}  // namespace hires::cli
+}  // namespace hires::lab

@@ -6,7 +6,7 @@ namespace CLI {
 class App;
 }
 
-namespace hires::cli {
+namespace hires::lab {
 
 /// What was typed behind `hires_lab list`.
 struct LabListOptions {
@@ -21,4 +21,4 @@ void AddLabListVerb(CLI::App* app, LabListOptions* options);
 /// @return kExitRecommended.  @throws base::ConfigError for bad input.
 int RunLabListVerb(const LabListOptions& options, const std::string& package_folder);
 
-}  // namespace hires::cli
+}  // namespace hires::lab

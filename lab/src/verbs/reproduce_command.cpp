@@ -24,13 +24,9 @@
 #include "lab/src/reproduce/catalogue.h"
 #include "lab/src/reproduce/judge.h"
 
-namespace hires::cli {
+namespace hires::lab {
 namespace {
 
-using evaluation::CatalogueItem;
-using evaluation::JudgedItem;
-using evaluation::Play;
-using evaluation::Verdict;
 using nlohmann::ordered_json;
 
 std::string CataloguePath(const ReproduceOptions& options, const std::string& package) {
@@ -56,7 +52,7 @@ class PlaysDisplay {
   void Show(const PlaysProgress& progress) {
     const std::string text =
         fmt::format("{} of {}, {}: {}", progress.number, progress.all, progress.play,
-                    ProgressText(progress.done / (progress.done + progress.left), progress.done));
+                    cli::ProgressText(progress.done / (progress.done + progress.left), progress.done));
     if (is_terminal_) {
       std::cerr << '\r' << text << "\033[K" << std::flush;
     } else if (progress.play != told_) {
@@ -79,7 +75,7 @@ int List(const std::vector<CatalogueItem>& items, const std::vector<Play>& plays
   for (const CatalogueItem& item : items) {
     rows.push_back({item.section, item.name, item.title, base::Join(item.plays, ", ")});
   }
-  std::cout << evaluation::FormatTable(rows) << '\n';
+  std::cout << reports::FormatTable(rows) << '\n';
   rows = {{"play", "answer", "time [s]", "command"}};
   double seconds = 0.0, missing = 0.0;
   for (const Play& play : plays) {
@@ -94,12 +90,12 @@ int List(const std::vector<CatalogueItem>& items, const std::vector<Play>& plays
                     : stored->build == store->build() ? "there"
                                                       : "there, of another build",
                     fmt::format("{:.0f}", stored ? stored->seconds : play.seconds),
-                    CommandText(words)});
+                    cli::CommandText(words)});
   }
-  std::cout << evaluation::FormatTable(rows)
+  std::cout << reports::FormatTable(rows)
             << fmt::format("{}, {:.0f} s in all; {:.0f} s are still to be played\n",
                            base::Counted(plays.size(), "play"), seconds, missing);
-  return kExitRecommended;
+  return cli::kExitRecommended;
 }
 
 std::map<std::string, int> CountVerdicts(const std::vector<JudgedItem>& items) {
@@ -121,13 +117,13 @@ ordered_json PlaysJson(const PlaysDone& done, const std::string& build) {
 ordered_json AnswerJson(const std::vector<JudgedItem>& items, const PlaysDone& done,
                         const std::string& build) {
   return {{"verdicts", CountVerdicts(items)},
-          {"items", evaluation::ToJson(items)},
+          {"items", ToJson(items)},
           {"missing", done.missing},
           {"plays", PlaysJson(done, build)}};
 }
 
 void Print(const std::vector<JudgedItem>& items, const PlaysDone& done, const std::string& build) {
-  std::cout << evaluation::VerdictTable(items) << '\n';
+  std::cout << VerdictTable(items) << '\n';
   std::vector<std::string> counts;
   for (const auto& [verdict, count] : CountVerdicts(items)) {
     counts.push_back(fmt::format("{} {}", count, verdict));
@@ -154,7 +150,7 @@ void AddReproduceVerb(CLI::App* app, ReproduceOptions* options) {
   verb->add_option("what", options->wanted,
                    "all, sections (6.1), or tables, figures and listings ('Table 6.5'), as --list "
                    "names them; default: all");
-  AddReportOptions(verb, &options->report);
+  cli::AddReportOptions(verb, &options->report);
   verb->add_option("--results", options->results,
                    "folder of the answers; default: hires/results among the user's caches");
   verb->add_option("--catalogue", options->catalogue,
@@ -168,21 +164,21 @@ void AddReproduceVerb(CLI::App* app, ReproduceOptions* options) {
 int RunReproduceVerb(const ReproduceOptions& options, const std::string& package_folder,
                      const std::function<bool()>& cancelled) {
   const std::string path = CataloguePath(options, package_folder);
-  const evaluation::Catalogue catalogue = evaluation::ReadCatalogue(path);
-  const std::vector<CatalogueItem> items = evaluation::ItemsOf(
+  const Catalogue catalogue = ReadCatalogue(path);
+  const std::vector<CatalogueItem> items = ItemsOf(
       catalogue, options.wanted.empty() ? std::vector<std::string>{"all"} : options.wanted);
   PlaysOrder order;
-  order.plays = evaluation::PlaysFor(catalogue, items);
+  order.plays = PlaysFor(catalogue, items);
   order.program = std::filesystem::read_symlink("/proc/self/exe").string();
   const std::string results = ResultsFolder(options);
   PlayStore store({results, package_folder, HashOfFile(order.program)});
   if (options.is_list) return List(items, order.plays, &store);
   const base::WriterLock lock(results + "/results", "name another folder with --results");
-  CheckReport(options.report);
-  ReportOrigin origin;
+  cli::CheckReport(options.report);
+  cli::ReportOrigin origin;
   origin.verb = "reproduce";
-  if (IsWanted(options.report)) origin.inputs = {{"catalogue", path}};
-  RefuseInputs(options.report, origin.inputs);
+  if (cli::IsWanted(options.report)) origin.inputs = {{"catalogue", path}};
+  cli::RefuseInputs(options.report, origin.inputs);
   order.package = package_folder;
   order.again = options.again;
   order.cancelled = cancelled;
@@ -196,15 +192,15 @@ int RunReproduceVerb(const ReproduceOptions& options, const std::string& package
   for (const auto& [name, answer] : done.answers) answers[name] = answer.content;
   std::vector<JudgedItem> judged;
   for (const CatalogueItem& item : items) {
-    judged.push_back(evaluation::Judge(item, answers, done.missing));
+    judged.push_back(Judge(item, answers, done.missing));
   }
   Print(judged, done, store.build());
-  if (done.is_cancelled) return kExitCancelled;
-  WriteReport(options.report, origin, AnswerJson(judged, done, store.build()));
+  if (done.is_cancelled) return cli::kExitCancelled;
+  cli::WriteReport(options.report, origin, AnswerJson(judged, done, store.build()));
   const bool is_whole = std::none_of(judged.begin(), judged.end(), [](const JudgedItem& item) {
     return item.verdict == Verdict::kNotPlayed;
   });
-  return is_whole ? kExitRecommended : kExitNoWorker;
+  return is_whole ? cli::kExitRecommended : cli::kExitNoWorker;
 }
 
-}  // namespace hires::cli
+}  // namespace hires::lab

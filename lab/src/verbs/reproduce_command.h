@@ -6,13 +6,13 @@
 
 #include "cli/report_output.h"
 
-namespace hires::cli {
+namespace hires::lab {
 
 /// What was typed behind `hires reproduce`.
 struct ReproduceOptions {
   std::vector<std::string> wanted;
   std::string catalogue, results;
-  ReportOptions report;
+  cli::ReportOptions report;
   bool again{false}, is_list{false}, quiet{false};
   CLI::App* verb{nullptr};
 };
@@ -26,4 +26,4 @@ void AddReproduceVerb(CLI::App* app, ReproduceOptions* options);
 int RunReproduceVerb(const ReproduceOptions& options, const std::string& package_folder,
                      const std::function<bool()>& cancelled);
 
-}  // namespace hires::cli
+}  // namespace hires::lab

@@ -25,11 +25,10 @@
 #include "hires/knowledge/blackboard_config.h"
 #include "hires/knowledge/store.h"
 
-namespace hires::cli {
+namespace hires::lab {
 namespace {
 
 namespace fs = std::filesystem;
-using evaluation::SeriesRun;
 using nlohmann::ordered_json;
 
 void MakeStore(const std::string& folder) {
@@ -77,10 +76,10 @@ class Runner {
     }
     for (int run = first + 1; run <= options_.runs; ++run) {
       if (!PlayOne(run)) return false;
-      std::cout << evaluation::RunSummary(runs().back()) << '\n' << std::flush;
+      std::cout << RunSummary(runs().back()) << '\n' << std::flush;
       if (options_.quiet) continue;
       const double fraction = static_cast<double>(run - first) / (options_.runs - first);
-      std::cerr << ProgressText(fraction, base::SteadyNow() - begin) << std::endl;
+      std::cerr << cli::ProgressText(fraction, base::SteadyNow() - begin) << std::endl;
     }
     return true;
   }
@@ -108,11 +107,11 @@ class Runner {
     std::vector<std::string> words = AchieveWords(order, options_.player.threads);
     words.resize(words.size() - 4);  // without the files that are there
     words.insert(words.begin(), "hires");
-    std::cerr << "  " << CommandText(words) << '\n';
+    std::cerr << "  " << cli::CommandText(words) << '\n';
   }
 
   void WarnOfOverlaps(const SeriesRun& run) const {
-    for (const evaluation::Overlap& overlap : series_.OverlapsOf(run)) {
+    for (const Overlap& overlap : series_.OverlapsOf(run)) {
       base::Log(base::LogLevel::kWarn, fmt::format("run {}: {} begins in {}, or touches it",
                                                    run.run, overlap.thing, overlap.other));
     }
@@ -123,10 +122,10 @@ class Runner {
     for (int attempt = 0; attempt <= options_.restarts; ++attempt) {
       const TryEnd end = PlayTry(order, options_.player, cancelled_);
       if (end.is_cancelled) return false;
-      run->outcome = evaluation::ToString(evaluation::SeriesOutcome::kBroken);
+      run->outcome = ToString(SeriesOutcome::kBroken);
       run->cause = end.broken;
       if (end.broken.empty()) TakeResult(order, run);
-      if (run->outcome != evaluation::ToString(evaluation::SeriesOutcome::kBroken)) return true;
+      if (run->outcome != ToString(SeriesOutcome::kBroken)) return true;
       run->broken_tries.push_back(run->cause);
       const bool is_last = attempt == options_.restarts;
       if (!options_.quiet) {
@@ -139,19 +138,19 @@ class Runner {
 
   static void TakeResult(const ScenarioOrder& order, SeriesRun* run) {
     const std::string path = ResultOf(order);
-    evaluation::TakeAchieveReport(ordered_json::parse(base::ReadTextFile(path), nullptr, false),
+    TakeAchieveReport(ordered_json::parse(base::ReadTextFile(path), nullptr, false),
                                   path, run);
   }
 
   /// The episode goes among the others; that of a run that broke stays in the run's folder.
   void Keep(const std::string& name, const ScenarioOrder& order, SeriesRun* run) const {
     std::error_code error;
-    const bool is_broken = run->outcome == evaluation::ToString(evaluation::SeriesOutcome::kBroken);
+    const bool is_broken = run->outcome == ToString(SeriesOutcome::kBroken);
     if (is_broken || !fs::exists(StoreOf(order), error)) return;
     {
       // Not only to be read: what is in its log yet becomes part of the file.
       const knowledge::Store store(StoreOf(order), ontology_);
-      evaluation::TakeBlackboard(store, run);
+      TakeBlackboard(store, run);
     }
     fs::rename(StoreOf(order), store_ + "/" + name + ".db");
     run->episode = name;
@@ -162,36 +161,36 @@ class Runner {
   const std::function<bool()>& cancelled_;
   const std::string store_;
   const std::shared_ptr<const knowledge::Ontology> ontology_;
-  evaluation::SeriesJournal journal_;
+  SeriesJournal journal_;
 };
 
 void CheckOutputs(const ScenariosOptions& options) {
-  CheckReport(options.report);
-  if (!options.csv.empty()) evaluation::RequireFolderOf(options.csv);
+  cli::CheckReport(options.report);
+  if (!options.csv.empty()) reports::RequireFolderOf(options.csv);
   MakeStore(options.store);
 }
 
 int ExitCodeOfRuns(const std::vector<SeriesRun>& runs) {
   const auto any = [&](const auto& is) { return std::any_of(runs.begin(), runs.end(), is); };
-  const auto has = [](evaluation::SeriesOutcome outcome) {
+  const auto has = [](SeriesOutcome outcome) {
     return [word = ToString(outcome)](const SeriesRun& run) { return run.outcome == word; };
   };
-  if (any(has(evaluation::SeriesOutcome::kBroken))) return kExitSomeBroken;
+  if (any(has(SeriesOutcome::kBroken))) return kExitSomeBroken;
   const bool is_done =
-      std::all_of(runs.begin(), runs.end(), has(evaluation::SeriesOutcome::kSucceeded));
+      std::all_of(runs.begin(), runs.end(), has(SeriesOutcome::kSucceeded));
   return is_done ? kExitAllSucceeded : kExitNotAllSucceeded;
 }
 
-void WriteAll(const evaluation::SeriesReport& report, const ScenariosOptions& options,
+void WriteAll(const SeriesReport& report, const ScenariosOptions& options,
               const ordered_json& setting) {
-  std::cout << evaluation::SeriesSummary(report) << FilesLine(setting.at("files")) << std::flush;
-  if (!options.csv.empty()) base::ReplaceTextFile(options.csv, evaluation::SeriesCsv(report));
-  ReportOrigin origin;
+  std::cout << SeriesSummary(report) << FilesLine(setting.at("files")) << std::flush;
+  if (!options.csv.empty()) base::ReplaceTextFile(options.csv, SeriesCsv(report));
+  cli::ReportOrigin origin;
   origin.verb = "scenarios";
   origin.is_local = !options.player.is_graph;
   origin.inputs = {{"series", options.file}};
   origin.hashes = {{"files", setting.at("files")}, {"inputs", setting.at("inputs")}};
-  WriteReport(options.report, origin, ToJson(report));
+  cli::WriteReport(options.report, origin, ToJson(report));
 }
 
 /// Who names a scenario where a series is wanted is told how a series is played with it.
@@ -214,11 +213,11 @@ void AddGraphOptions(CLI::App* verb, ScenarioPlayer* player) {
   verb->add_option("--pace", player->pace,
                    "with --graph: simulated seconds of the robot per second, 0: as fast as it can; "
                    "default: 1")
-      ->check(NumberBetween(0.0, 1000.0))
+      ->check(cli::NumberBetween(0.0, 1000.0))
       ->needs(graph);
   verb->add_option("--workers", player->workers,
                    "with --graph: simulators that imagine; default: 1")
-      ->check(NumberBetween(1, 64))
+      ->check(cli::NumberBetween(1, 64))
       ->needs(graph);
 }
 
@@ -234,8 +233,8 @@ void AddScenariosVerb(CLI::App* app, ScenariosOptions* options) {
                    "YAML file of !FluentPoseModification and !Scenario documents, or its name in "
                    "lab/config/series")
       ->required();
-  verb->add_option("--runs", options->runs, "default: 20")->check(NumberBetween(1, 100000));
-  verb->add_option("--seed", options->seed, "of all chance; default: 1")->check(WholeNumber());
+  verb->add_option("--runs", options->runs, "default: 20")->check(cli::NumberBetween(1, 100000));
+  verb->add_option("--seed", options->seed, "of all chance; default: 1")->check(cli::WholeNumber());
   verb->add_option("--order", options->order,
                    "all: through all combinations of choices, and again; drawn: each run draws; "
                    "default: all")
@@ -257,13 +256,13 @@ void AddScenariosVerb(CLI::App* app, ScenariosOptions* options) {
       "folder for episodes, files of the runs and the journal; the same command goes on "
       "with what is there; default: hires_scenarios");
   verb->add_option("--restarts", options->restarts, "of a run that broke down; default: 1")
-      ->check(NumberBetween(0, 100));
+      ->check(cli::NumberBetween(0, 100));
   verb->add_option("--hang-after", options->player.hang_after,
                    "[s] without progress, after which a run is taken to hang; default: 300")
-      ->check(NumberBetween(0.1, 1e6));
+      ->check(cli::NumberBetween(0.1, 1e6));
   verb->add_option("--threads", options->player.threads,
                    "that play rollouts; changes no number; default: 2")
-      ->check(NumberBetween(1, 256));
+      ->check(cli::NumberBetween(1, 256));
   AddGraphOptions(verb, &options->player);
   verb->add_option("--json", options->report.json, "write everything to this file, for machines");
   verb->add_option("--csv", options->csv, "write one line per run to this file");
@@ -288,9 +287,9 @@ int RunScenariosVerb(const ScenariosOptions& typed, const std::string& package_f
                              runner.runs().size(),
                              base::Counted(static_cast<std::size_t>(options.runs), "run"),
                              options.runs == 1 ? "is" : "are", options.store);
-    return kExitCancelled;
+    return cli::kExitCancelled;
   }
-  evaluation::SeriesReport report;
+  SeriesReport report;
   report.series = series.series();
   report.runs.assign(runner.runs().begin(), runner.runs().begin() + options.runs);
   report.stored = NumStored(options.store);
@@ -299,4 +298,4 @@ int RunScenariosVerb(const ScenariosOptions& typed, const std::string& package_f
   return ExitCodeOfRuns(report.runs);
 }
 
-}  // namespace hires::cli
+}  // namespace hires::lab

@@ -11,7 +11,7 @@ namespace CLI {
 class App;
 }
 
-namespace hires::cli {
+namespace hires::lab {
 
 /// Exit codes of `hires scenarios`.
 enum ScenariosExitCode {
@@ -25,7 +25,7 @@ enum ScenariosExitCode {
 struct ScenariosOptions {
   std::string file, scenario, instruction, truth, world, csv;
   std::string store{"hires_scenarios"}, order{"all"};
-  ReportOptions report;
+  cli::ReportOptions report;
   ScenarioPlayer player;
   int runs{20}, restarts{1};
   std::uint64_t seed{1};
@@ -43,4 +43,4 @@ void AddScenariosVerb(CLI::App* app, ScenariosOptions* options);
 int RunScenariosVerb(const ScenariosOptions& options, const std::string& package_folder,
                      bool can_play_graph, const std::function<bool()>& cancelled);
 
-}  // namespace hires::cli
+}  // namespace hires::lab

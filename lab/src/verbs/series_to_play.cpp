@@ -20,12 +20,10 @@
 #include "hires/simulation/scene.h"
 #include "hires/world/world.h"
 
-namespace hires::cli {
+namespace hires::lab {
 namespace {
 
 namespace fs = std::filesystem;
-using evaluation::SeriesRun;
-using evaluation::SeriesStart;
 using nlohmann::ordered_json;
 
 constexpr char kIdealTruth[] = "ideal";
@@ -47,15 +45,15 @@ auto UseFrom(const std::string& place, const Use& use) {
 }
 
 /// @param original  the world of the start as it is without the variation.
-std::vector<evaluation::Overlap> OverlapsIn(const imagination::ImaginationSetup& original,
+std::vector<Overlap> OverlapsIn(const imagination::ImaginationSetup& original,
                                             const SeriesStart& start,
-                                            const evaluation::VariantFiles& files) {
-  const auto before = evaluation::StartOf(original, start.scenario, "").robot;
-  const auto after = evaluation::StartOf(original, files.scenario, "").robot;
+                                            const VariantFiles& files) {
+  const auto before = sim_robot::StartOf(original, start.scenario, "").robot;
+  const auto after = sim_robot::StartOf(original, files.scenario, "").robot;
   const simulation::Scene& scene = *original.scene;
   const bool is_changed = files.world != start.world;  // a map stays what it is
   const world::World varied = is_changed ? world::LoadWorld(files.world) : scene.world;
-  return evaluation::NewOverlaps(
+  return NewOverlaps(
       {scene.world, before.X_MB}, {varied, after.X_MB}, scene.robot.model.name,
       simulation::FrozenShapes(scene.robot, robot::PostureOf(scene.robot, after.joints)));
 }
@@ -65,9 +63,9 @@ std::vector<evaluation::Overlap> OverlapsIn(const imagination::ImaginationSetup&
 SeriesToPlay::SeriesToPlay(const ScenariosOptions& options, const std::string& package_folder)
     : options_(options),
       package_folder_(package_folder),
-      series_(evaluation::ReadScenarioSeries(options.file)),
-      order_(options.order == "drawn" ? evaluation::SeriesOrder::kDrawn
-                                      : evaluation::SeriesOrder::kAll),
+      series_(ReadScenarioSeries(options.file)),
+      order_(options.order == "drawn" ? SeriesOrder::kDrawn
+                                      : SeriesOrder::kAll),
       setting_(MakeSetting()) {
   base::Hasher hasher;
   hasher.Add(setting_.dump());
@@ -77,8 +75,8 @@ SeriesToPlay::SeriesToPlay(const ScenariosOptions& options, const std::string& p
 SeriesRun SeriesToPlay::Expected(int number) const {
   SeriesRun run;
   run.run = number;
-  run.choices = evaluation::ChoicesOfRun(series_, order_, options_.seed, number);
-  run.seed = evaluation::SeedOfRun(options_.seed, number);
+  run.choices = ChoicesOfRun(series_, order_, options_.seed, number);
+  run.seed = SeedOfRun(options_.seed, number);
   const SeriesStart start = StartOf(run.choices);
   run.instruction = start.instruction;
   run.scenario = fs::path(start.scenario).stem().string();
@@ -89,8 +87,8 @@ SeriesRun SeriesToPlay::Expected(int number) const {
 ScenarioOrder SeriesToPlay::Prepare(const SeriesRun& run, const std::string& folder) const {
   const SeriesStart start = StartOf(run.choices);
   ScenarioOrder order;
-  order.task = evaluation::TaskOfInstruction(start.instruction);
-  order.files = evaluation::WriteVariant(series_, run.choices,
+  order.task = TaskOfInstruction(start.instruction);
+  order.files = WriteVariant(series_, run.choices,
                                          {start.scenario, order.task, start.world, folder});
   order.truth = start.truth;
   order.folder = folder;
@@ -129,7 +127,7 @@ void SeriesToPlay::CheckInstruction(const loop::LoopSetup& setup, const SeriesSt
   std::string place = PlaceOf(start, "Instruction", "--instruction", options_.instruction);
   if (place.empty()) place = start.scenario + ": task";
   UseFrom(fmt::format("{} '{}'", place, start.instruction), [&] {
-    loop::RequireTask(setup, start.scenario, evaluation::TaskOfInstruction(start.instruction));
+    loop::RequireTask(setup, start.scenario, TaskOfInstruction(start.instruction));
   });
 }
 
@@ -141,7 +139,7 @@ std::string SeriesToPlay::PlaceOf(const SeriesStart& start, const std::string& k
 }
 
 SeriesStart SeriesToPlay::StartOf(const std::vector<int>& choices) const {
-  SeriesStart start = evaluation::StartOfRun(series_, choices);
+  SeriesStart start = StartOfRun(series_, choices);
   if (!options_.scenario.empty()) start.scenario = options_.scenario;
   if (start.scenario.empty()) {
     throw base::ConfigError(options_.file +
@@ -150,11 +148,11 @@ SeriesStart SeriesToPlay::StartOf(const std::vector<int>& choices) const {
   }
   start.scenario = UseFrom(PlaceOf(start, "Scenario", "--scenario", options_.scenario), [&] {
     return WholePath(
-        evaluation::ScenarioPath(start.scenario, package_folder_ + "/config/scenarios"));
+        sim_robot::ScenarioPath(start.scenario, package_folder_ + "/config/scenarios"));
   });
   if (!options_.instruction.empty()) start.instruction = options_.instruction;
   if (start.instruction.empty()) {
-    start.instruction = "achieve " + evaluation::ReadScenario(start.scenario).task;
+    start.instruction = "achieve " + sim_robot::ReadScenario(start.scenario).task;
   }
   if (!options_.truth.empty()) start.truth = options_.truth;
   if (options_.is_ideal) start.truth = kIdealTruth;
@@ -189,7 +187,7 @@ std::vector<SeriesToPlay::Input> SeriesToPlay::Inputs() const {
     const SeriesStart start = StartOf(choices);
     inputs.push_back(
         {"scenario", start.scenario, PlaceOf(start, "Scenario", "--scenario", options_.scenario)});
-    for (const std::string& knowledge : evaluation::ReadScenario(start.scenario).knowledge) {
+    for (const std::string& knowledge : sim_robot::ReadScenario(start.scenario).knowledge) {
       inputs.push_back({"knowledge", knowledge, start.scenario + ": knowledge"});
     }
     inputs.push_back({"world", start.world, PlaceOf(start, "World", "--world", options_.world)});
@@ -197,7 +195,7 @@ std::vector<SeriesToPlay::Input> SeriesToPlay::Inputs() const {
     inputs.push_back({"truth",
                       UseFrom(place,
                               [&] {
-                                return evaluation::TruthPath(start.truth,
+                                return sim_robot::TruthPath(start.truth,
                                                              package_folder_ + "/config/truths");
                               }),
                       place});
@@ -217,7 +215,7 @@ std::string SeriesToPlay::InputsHash() const {
 ordered_json SeriesToPlay::MakeSetting() const {
   return {{"series", options_.file},
           {"inputs", InputsHash()},
-          {"files", evaluation::ConfigurationHash(package_folder_)},
+          {"files", reports::ConfigurationHash(package_folder_)},
           {"scenario", options_.scenario},
           {"instruction", options_.instruction},
           {"truth", options_.is_ideal ? kIdealTruth : options_.truth},
@@ -231,4 +229,4 @@ ordered_json SeriesToPlay::MakeSetting() const {
           {"workers", options_.player.is_graph ? options_.player.workers : 0}};
 }
 
-}  // namespace hires::cli
+}  // namespace hires::lab

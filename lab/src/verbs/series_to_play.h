@@ -11,7 +11,7 @@
 #include "lab/src/series/series_run.h"
 #include "loop/task_loop.h"
 
-namespace hires::cli {
+namespace hires::lab {
 
 /// A series with what its file leaves open filled in.
 class SeriesToPlay {
@@ -19,15 +19,15 @@ class SeriesToPlay {
   /// @pre options and package_folder outlive this.  @throws base::ConfigError for bad input.
   SeriesToPlay(const ScenariosOptions& options, const std::string& package_folder);
 
-  const evaluation::ScenarioSeries& series() const { return series_; }
+  const ScenarioSeries& series() const { return series_; }
   /// What its results depend on.
   const nlohmann::ordered_json& setting() const { return setting_; }
   const std::string& name() const { return name_; }  ///< of its journal
 
   /// All that is known of a run before it is played.
-  evaluation::SeriesRun Expected(int number) const;
+  SeriesRun Expected(int number) const;
   /// Writes what the run is played with into the folder.
-  ScenarioOrder Prepare(const evaluation::SeriesRun& run, const std::string& folder) const;
+  ScenarioOrder Prepare(const SeriesRun& run, const std::string& folder) const;
 
   /// Each combination of choices that is played can be made, the robot can be told so, and no
   /// answer is written over an input.
@@ -35,7 +35,7 @@ class SeriesToPlay {
   void Check();
 
   /// What begins in each other in that run, though not where nothing is changed.  @pre Check()
-  const std::vector<evaluation::Overlap>& OverlapsOf(const evaluation::SeriesRun& run) const {
+  const std::vector<Overlap>& OverlapsOf(const SeriesRun& run) const {
     return overlaps_.at(run.choices);
   }
 
@@ -46,9 +46,9 @@ class SeriesToPlay {
     std::string place;  ///< that names it, for messages: "--world"; empty: no one asks
   };
 
-  evaluation::SeriesStart StartOf(const std::vector<int>& choices) const;
+  SeriesStart StartOf(const std::vector<int>& choices) const;
   /// Where the value of a start stands that an option or a `!Scenario` gave; empty: neither did.
-  std::string PlaceOf(const evaluation::SeriesStart& start, const std::string& key,
+  std::string PlaceOf(const SeriesStart& start, const std::string& key,
                       const std::string& option, const std::string& typed) const;
   std::vector<std::vector<int>> ChoicesOfStarts() const;
   std::vector<Input> Inputs() const;
@@ -56,15 +56,15 @@ class SeriesToPlay {
   nlohmann::ordered_json MakeSetting() const;
   void CheckOutputs() const;
   /// That the robot can be told so.
-  void CheckInstruction(const loop::LoopSetup& setup, const evaluation::SeriesStart& start) const;
+  void CheckInstruction(const loop::LoopSetup& setup, const SeriesStart& start) const;
 
   const ScenariosOptions& options_;
   const std::string& package_folder_;
-  const evaluation::ScenarioSeries series_;
-  const evaluation::SeriesOrder order_;
+  const ScenarioSeries series_;
+  const SeriesOrder order_;
   const nlohmann::ordered_json setting_;
   std::string name_;
-  std::map<std::vector<int>, std::vector<evaluation::Overlap>> overlaps_;  // by choices
+  std::map<std::vector<int>, std::vector<Overlap>> overlaps_;  // by choices
 };
 
-}  // namespace hires::cli
+}  // namespace hires::lab

@@ -35,8 +35,8 @@ EpisodeRecorderParams LoadEpisodeRecorderParams() {
   const std::string own = ros::package::getPath("hires") + "/config/episode.yaml";
   const std::string config = PrivateText("config").value_or("");
   EpisodeRecorderParams params;
-  params.episode = hires::evaluation::ReadEpisodeConfig(config.empty() ? own : config,
-                                                        PrivateText("names").value_or(""));
+  params.episode = hires::reports::ReadEpisodeConfig(config.empty() ? own : config,
+                                                     PrivateText("names").value_or(""));
   params.folder = PrivateText("folder").value_or("");
   if (params.folder.empty()) {
     throw ConfigError("~folder is missing; wanted the folder that the bags shall lie in");
@@ -53,7 +53,7 @@ EpisodeRecorderParams LoadEpisodeRecorderParams() {
 EpisodeRecorderNode::EpisodeRecorderNode(const EpisodeRecorderParams& params, ros::NodeHandle* nh)
     : rotation_(params.folder, hires::base::LocalTime(), params.episode.bags),
       chunk_(static_cast<std::uint32_t>(params.episode.bags.chunk)) {
-  for (const hires::evaluation::EpisodeTopic& topic : params.episode.topics) {
+  for (const hires::reports::EpisodeTopic& topic : params.episode.topics) {
     const boost::function<void(const Event&)> take =
         [this, name = topic.topic](const Event& event) { OnMessage(name, event); };
     ros::SubscribeOptions options;

@@ -15,7 +15,7 @@
 namespace hires_ros {
 
 struct EpisodeRecorderParams {
-  hires::evaluation::EpisodeConfig episode;
+  hires::reports::EpisodeConfig episode;
   std::string folder;  ///< of the bags
 };
 
@@ -41,7 +41,7 @@ class EpisodeRecorderNode {
   void EndChunk();
   void FinishBag();
 
-  hires::evaluation::BagRotation rotation_;
+  hires::reports::BagRotation rotation_;
   const std::uint32_t chunk_;  // [bytes]
   rosbag::Bag bag_;
   using Connection = std::pair<std::string, std::string>;  // topic and publisher

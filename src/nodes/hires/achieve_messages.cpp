@@ -11,7 +11,7 @@ namespace evaluation = hires::evaluation;
 
 }  // namespace
 
-hires::ImaginationStatus ToMsg(const evaluation::ImaginedStep& step) {
+hires::ImaginationStatus ToMsg(const loop::ImaginedStep& step) {
   hires::ImaginationStatus message;
   message.plan = static_cast<std::uint32_t>(step.plan);
   message.step = static_cast<std::uint32_t>(step.step);
@@ -22,7 +22,7 @@ hires::ImaginationStatus ToMsg(const evaluation::ImaginedStep& step) {
   message.deadline = step.deadline;
   message.wall_seconds = step.wall_seconds;
   message.simulated_seconds = step.simulated_seconds;
-  const bool is_running = step.outcome == evaluation::ImaginedOutcome::kRunning;
+  const bool is_running = step.outcome == loop::ImaginedOutcome::kRunning;
   if (!is_running) message.outcome = ToString(step.outcome);
   for (const auto& prediction : step.predictions) message.predictions.push_back(ToMsg(prediction));
   message.recommended = step.recommended;
@@ -30,8 +30,8 @@ hires::ImaginationStatus ToMsg(const evaluation::ImaginedStep& step) {
   return message;
 }
 
-evaluation::ImaginedStep FromMsg(const hires::ImaginationStatus& message) {
-  evaluation::ImaginedStep step;
+loop::ImaginedStep FromMsg(const hires::ImaginationStatus& message) {
+  loop::ImaginedStep step;
   step.plan = static_cast<int>(message.plan);
   step.step = static_cast<int>(message.step);
   step.action = FromMsg(message.action);
@@ -41,7 +41,7 @@ evaluation::ImaginedStep FromMsg(const hires::ImaginationStatus& message) {
   step.deadline = message.deadline;
   step.wall_seconds = message.wall_seconds;
   step.simulated_seconds = message.simulated_seconds;
-  step.outcome = evaluation::ParseImaginedOutcome(message.outcome);
+  step.outcome = loop::ParseImaginedOutcome(message.outcome);
   for (const hires::Prediction& prediction : message.predictions) {
     step.predictions.push_back(FromMsg(prediction));
   }

@@ -7,8 +7,8 @@
 /// Imaginations of a task as messages, and back.
 namespace hires_ros {
 
-hires::ImaginationStatus ToMsg(const hires::evaluation::ImaginedStep& step);
+hires::ImaginationStatus ToMsg(const hires::loop::ImaginedStep& step);
 /// @throws hires::base::ConfigError for an outcome that there is not.
-hires::evaluation::ImaginedStep FromMsg(const hires::ImaginationStatus& message);
+hires::loop::ImaginedStep FromMsg(const hires::ImaginationStatus& message);
 
 }  // namespace hires_ros

@@ -11,7 +11,7 @@
 namespace hires_ros {
 
 /// A topic of a bag; one that was recorded with several types stands there once for each.
-struct BagTopic : hires::evaluation::BagTopic {
+struct BagTopic : hires::reports::BagTopic {
   std::string md5sum;
 };
 

@@ -22,9 +22,9 @@ namespace hires_ros {
 namespace {
 
 namespace evaluation = hires::evaluation;
-using evaluation::ActionFate;
-using evaluation::EpisodeBuilder;
 using hires::ExecuteActionResult;
+using reports::ActionFate;
+using reports::EpisodeBuilder;
 
 ActionFate FateOf(std::uint8_t code) {
   switch (code) {
@@ -39,7 +39,7 @@ ActionFate FateOf(std::uint8_t code) {
 /// Hands messages of a bag to the builder: conversion alone.
 class Reader {
  public:
-  Reader(const evaluation::EpisodeConfig& config, const hires::imagination::ImaginationSetup& setup)
+  Reader(const reports::EpisodeConfig& config, const hires::imagination::ImaginationSetup& setup)
       : config_(config),
         tree_(std::make_shared<TransformBuffer>()),
         builder_(setup,
@@ -106,7 +106,7 @@ class Reader {
     builder_.OnKnownObjects(msg.header.stamp.toSec(), FromMsg(msg));
   }
 
-  const evaluation::EpisodeConfig& config_;
+  const reports::EpisodeConfig& config_;
   std::shared_ptr<TransformBuffer> tree_;
   EpisodeBuilder builder_;
   std::map<std::string, std::function<void(const rosbag::MessageInstance&)>> take_;  // by topic
@@ -114,8 +114,7 @@ class Reader {
 
 }  // namespace
 
-EpisodeRecording ReadEpisodeRecording(const std::string& path,
-                                      const evaluation::EpisodeConfig& config,
+EpisodeRecording ReadEpisodeRecording(const std::string& path, const reports::EpisodeConfig& config,
                                       const hires::imagination::ImaginationSetup& setup) {
   EpisodeRecording recording;
   ReadBag(path, [&] {

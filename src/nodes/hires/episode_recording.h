@@ -11,9 +11,9 @@ namespace hires_ros {
 
 /// What a bag of a robot episode says.
 struct EpisodeRecording {
-  hires::evaluation::TopicCheck topics;
-  std::vector<hires::evaluation::Episode> episodes;  ///< one for each run of the robot's clock
-  std::map<std::string, int> dropped;                ///< what was left out and why -> how often
+  hires::reports::TopicCheck topics;
+  std::vector<hires::reports::Episode> episodes;  ///< one for each run of the robot's clock
+  std::map<std::string, int> dropped;             ///< what was left out and why -> how often
   std::string missing;  ///< of a robot whose state was never known: what did not come; or empty
 };
 
@@ -21,7 +21,7 @@ struct EpisodeRecording {
 /// @throws hires::base::ConfigError naming the bag and what to do: no such bag, unindexed or
 /// broken.
 EpisodeRecording ReadEpisodeRecording(const std::string& path,
-                                      const hires::evaluation::EpisodeConfig& config,
+                                      const hires::reports::EpisodeConfig& config,
                                       const hires::imagination::ImaginationSetup& setup);
 
 }  // namespace hires_ros

@@ -26,21 +26,21 @@ namespace {
 namespace cli = hires::cli;
 namespace evaluation = hires::evaluation;
 namespace imagination = hires::imagination;
-using evaluation::ComparedStep;
-using evaluation::Episode;
-using evaluation::EpisodeConfig;
-using evaluation::EpisodeStep;
-using evaluation::ImaginedAction;
 using hires::base::ConfigError;
 using imagination::ImaginationSetup;
 using nlohmann::ordered_json;
+using reports::ComparedStep;
+using reports::Episode;
+using reports::EpisodeConfig;
+using reports::EpisodeStep;
+using reports::ImaginedAction;
 
 /// Nothing when it was cancelled.
 using Imagine =
     std::function<std::optional<ImaginedAction>(const EpisodeStep& step, std::uint64_t place)>;
 
 EpisodeConfig ConfigOf(const EpisodeReplay& replay) {
-  EpisodeConfig config = evaluation::ReadEpisodeConfig(replay.config, replay.names);
+  EpisodeConfig config = reports::ReadEpisodeConfig(replay.config, replay.names);
   config.names.map_to_world =
       hires::geometry::ParseMapToWorld(replay.map_to_world, "--map-to-world");
   return config;
@@ -49,7 +49,7 @@ EpisodeConfig ConfigOf(const EpisodeReplay& replay) {
 // ---------------------------------------------------------------- imagining
 
 hires::ImagineGoal GoalOf(const EpisodeStep& step, const ImaginationSetup& setup,
-                          const evaluation::ReplayParams& params, std::uint64_t place) {
+                          const reports::ReplayParams& params, std::uint64_t place) {
   hires::base::ActionTemplate action{step.action.name, {}};
   for (const std::string& argument : step.action.arguments) {
     action.alternatives.push_back({argument});
@@ -90,9 +90,9 @@ Imagine WayOf(const EpisodeReplay& replay, const ImaginationSetup& setup,
               const std::vector<EpisodeStep>& steps, const std::function<bool()>& cancelled) {
   if (replay.is_local) {
     const hires::base::Crew crew{replay.threads, cancelled, {}};
-    return [=, with_goals = evaluation::WithGoals(setup, steps)](const EpisodeStep& step,
-                                                                 std::uint64_t place) {
-      return evaluation::ImagineStep(with_goals, step, replay.params, place, crew);
+    return [=, with_goals = reports::WithGoals(setup, steps)](const EpisodeStep& step,
+                                                              std::uint64_t place) {
+      return reports::ImagineStep(with_goals, step, replay.params, place, crew);
     };
   }
   return [=](const EpisodeStep& step, std::uint64_t place) {
@@ -115,7 +115,7 @@ std::optional<std::vector<ComparedStep>> CompareAll(const std::vector<EpisodeSte
     std::optional<ImaginedAction> imagined = ImaginedAction();
     if (steps[i].why_not.empty()) imagined = imagine(steps[i], i);
     if (!imagined) return std::nullopt;
-    compared.push_back(evaluation::CompareStep(steps[i], *imagined, surprise));
+    compared.push_back(reports::CompareStep(steps[i], *imagined, surprise));
   }
   ShowPlace(steps.size(), steps.size());
   return compared;
@@ -177,7 +177,7 @@ ordered_json ReplayedJson(const EpisodeReplay& replay, const EpisodeRecording& r
 std::optional<EpisodeConfig> ConfigOfEpisode(const EpisodeReplay& replay) {
   EpisodeConfig config = ConfigOf(replay);
   const std::vector<BagTopic> topics = TopicsOfBagFile(replay.bag);
-  const evaluation::TopicCheck check = CheckTopics(config, {topics.begin(), topics.end()});
+  const reports::TopicCheck check = CheckTopics(config, {topics.begin(), topics.end()});
   if (check.is_usable()) return config;
   if (HasImagineGoals(topics)) return std::nullopt;
   throw ConfigError(
@@ -197,17 +197,17 @@ int ReplayEpisode(const EpisodeReplay& replay, const EpisodeConfig& config,
   PrintNotes(recording);
   ordered_json json = ReplayedJson(replay, recording);
   for (const Episode& episode : recording.episodes) {
-    const std::vector<EpisodeStep> steps = evaluation::StepsOf(episode, setup, config);
+    const std::vector<EpisodeStep> steps = reports::StepsOf(episode, setup, config);
     if (steps.empty()) continue;
     const auto compared =
         CompareAll(steps, WayOf(replay, setup, steps, cancelled), config.surprise);
     if (!compared) return cli::kExitCancelled;
-    std::cout << evaluation::EpisodeTable(*compared) << '\n'
-              << evaluation::EpisodeSummary(*compared) << std::flush;
-    json["episodes"].push_back(evaluation::EpisodeJson(*compared));
+    std::cout << reports::EpisodeTable(*compared) << '\n'
+              << reports::EpisodeSummary(*compared) << std::flush;
+    json["episodes"].push_back(reports::EpisodeJson(*compared));
   }
   if (json["episodes"].empty()) FailWithoutSteps(replay);
-  if (!replay.json.empty()) evaluation::WriteJson(json, replay.json);
+  if (!replay.json.empty()) reports::WriteJson(json, replay.json);
   return cli::kExitRecommended;
 }
 

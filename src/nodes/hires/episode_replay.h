@@ -19,20 +19,20 @@ struct EpisodeReplay {
   std::vector<std::string> action_libraries;
   bool is_local{false};  ///< else a running imagination client is asked
   int threads{1};        ///< of is_local
-  hires::evaluation::ReplayParams params;
+  hires::reports::ReplayParams params;
 };
 
 /// What of the bag is to be read as an episode; nothing if it holds requests of imagination alone.
 /// @throws hires::base::ConfigError if it has neither that nor requests of imagination, saying what
 /// is missing and what to record; and as OpenBag.
-std::optional<hires::evaluation::EpisodeConfig> ConfigOfEpisode(const EpisodeReplay& replay);
+std::optional<hires::reports::EpisodeConfig> ConfigOfEpisode(const EpisodeReplay& replay);
 
 /// Imagines each step from the state in which it began, and prints predicted against happened.
 /// @param config  of ConfigOfEpisode.
 /// @return 0, or 130 when it was cancelled.
 /// @throws hires::base::ConfigError for a bag with nothing of use, saying why, and if there is no
 /// client to ask.
-int ReplayEpisode(const EpisodeReplay& replay, const hires::evaluation::EpisodeConfig& config,
+int ReplayEpisode(const EpisodeReplay& replay, const hires::reports::EpisodeConfig& config,
                   const std::string& package_folder, const std::function<bool()>& cancelled);
 
 }  // namespace hires_ros

@@ -61,8 +61,8 @@ std::uint8_t CodeOf(ActionEnd end) {
                                         : hires::ExecuteActionResult::FAILED;
 }
 
-std::uint8_t CodeOf(evaluation::AchieveOutcome outcome) {
-  using Outcome = evaluation::AchieveOutcome;
+std::uint8_t CodeOf(loop::AchieveOutcome outcome) {
+  using Outcome = loop::AchieveOutcome;
   switch (outcome) {
     case Outcome::kSucceeded:
       return hires::AchieveResult::SUCCEEDED;
@@ -85,7 +85,7 @@ std::uint8_t CodeOf(evaluation::AchieveOutcome outcome) {
 class EpisodeWriter : public loop::LoopRecording {
  public:
   EpisodeWriter(const std::string& path, const std::string& package_folder)
-      : config_(evaluation::ReadEpisodeConfig(package_folder + "/config/episode.yaml")),
+      : config_(reports::ReadEpisodeConfig(package_folder + "/config/episode.yaml")),
         camera_(CameraOf(package_folder)) {
     try {
       bag_.open(path, rosbag::bagmode::Write);
@@ -109,7 +109,7 @@ class EpisodeWriter : public loop::LoopRecording {
             }};
   }
 
-  void Finish(const evaluation::AchieveReport& report) override;
+  void Finish(const loop::AchieveReport& report) override;
 
  private:
   template <typename Message>
@@ -130,7 +130,7 @@ class EpisodeWriter : public loop::LoopRecording {
   void OnBegan(double time, int activity, const hires::base::ActionCall& action);
   void OnEnded(double time, int activity, ActionEnd end, const hires::base::Failure& failure);
 
-  const evaluation::EpisodeConfig config_;
+  const reports::EpisodeConfig config_;
   const std::string camera_;
   rosbag::Bag bag_;
   std::map<int, actionlib_msgs::GoalID> goals_;  // of the actions that run, by activity
@@ -215,8 +215,8 @@ void EpisodeWriter::OnEnded(double time, int activity, ActionEnd end,
 }
 
 /// The task and what became of it: steps, and what was predicted of them.
-void EpisodeWriter::Finish(const evaluation::AchieveReport& report) {
-  const double begin = evaluation::BeginOf(report.status), end = report.status.now;
+void EpisodeWriter::Finish(const loop::AchieveReport& report) {
+  const double begin = loop::BeginOf(report.status), end = report.status.now;
   hires::AchieveActionGoal goal;
   goal.header.stamp = ros::Time(begin);
   goal.goal_id.stamp = ros::Time(begin);
@@ -226,7 +226,7 @@ void EpisodeWriter::Finish(const evaluation::AchieveReport& report) {
   hires::AchieveActionResult result;
   result.header.stamp = ros::Time(end);
   result.status.goal_id = goal.goal_id;
-  result.status.status = report.outcome == evaluation::AchieveOutcome::kSucceeded
+  result.status.status = report.outcome == loop::AchieveOutcome::kSucceeded
                              ? actionlib_msgs::GoalStatus::SUCCEEDED
                              : actionlib_msgs::GoalStatus::ABORTED;
   result.result.code = CodeOf(report.outcome);

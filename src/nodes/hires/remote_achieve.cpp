@@ -27,8 +27,8 @@ constexpr double kStopWait = 60.0;  // [s] for the robot to come to a stand
 
 /// Of a feedback or a result.
 template <typename Message>
-evaluation::AchieveStatus StatusOf(const Message& message) {
-  evaluation::AchieveStatus status;
+loop::AchieveStatus StatusOf(const Message& message) {
+  loop::AchieveStatus status;
   status.now = ros::Time::now().toSec();
   for (const auto& step : message.steps) status.steps.push_back(FromMsg(step));
   for (const auto& step : message.imaginations) status.imaginations.push_back(FromMsg(step));
@@ -37,8 +37,8 @@ evaluation::AchieveStatus StatusOf(const Message& message) {
   return status;
 }
 
-evaluation::AchieveOutcome OutcomeOf(std::uint8_t code) {
-  using Outcome = evaluation::AchieveOutcome;
+loop::AchieveOutcome OutcomeOf(std::uint8_t code) {
+  using Outcome = loop::AchieveOutcome;
   switch (code) {
     case hires::AchieveResult::SUCCEEDED:
       return Outcome::kSucceeded;
@@ -64,31 +64,31 @@ evaluation::AchieveOutcome OutcomeOf(std::uint8_t code) {
 /// Feedback on its way from the thread that spins.
 class Feedback {
  public:
-  void Put(evaluation::AchieveStatus status) {
+  void Put(loop::AchieveStatus status) {
     const std::lock_guard<std::mutex> lock(mutex_);
     latest_ = std::move(status);
   }
-  std::optional<evaluation::AchieveStatus> Take() {
+  std::optional<loop::AchieveStatus> Take() {
     const std::lock_guard<std::mutex> lock(mutex_);
     return std::exchange(latest_, std::nullopt);
   }
 
  private:
   std::mutex mutex_;
-  std::optional<evaluation::AchieveStatus> latest_;
+  std::optional<loop::AchieveStatus> latest_;
 };
 
 /// The conversation about one task.
 class Conversation {
  public:
-  Conversation(const evaluation::AchieveQuery& query, const evaluation::OnAchieveStatus& on_status,
+  Conversation(const loop::AchieveQuery& query, const loop::OnAchieveStatus& on_status,
                const std::function<bool()>& cancelled)
       : query_(query),
         on_status_(on_status),
         cancelled_(cancelled),
         client_(kAchieveAction, true) {}
 
-  evaluation::AchieveReport Run() {
+  loop::AchieveReport Run() {
     RequireServer();
     hires::AchieveGoal goal;
     goal.task = query_.task;
@@ -139,8 +139,8 @@ class Conversation {
     if (status && on_status_) on_status_(*status);
   }
 
-  evaluation::AchieveReport ReportOf(const hires::AchieveResult& result) const {
-    evaluation::AchieveReport report;
+  loop::AchieveReport ReportOf(const hires::AchieveResult& result) const {
+    loop::AchieveReport report;
     report.task = query_.task;
     report.outcome = OutcomeOf(result.code);
     report.reason = result.reason;
@@ -150,8 +150,8 @@ class Conversation {
     return report;
   }
 
-  const evaluation::AchieveQuery& query_;
-  const evaluation::OnAchieveStatus& on_status_;
+  const loop::AchieveQuery& query_;
+  const loop::OnAchieveStatus& on_status_;
   const std::function<bool()>& cancelled_;
   Feedback feedback_;
   std::optional<double> give_up_;  // [s] steady, once it was cancelled
@@ -160,13 +160,13 @@ class Conversation {
 
 }  // namespace
 
-evaluation::AchieveReport AchieveRemotely(const evaluation::AchieveQuery& query,
-                                          const evaluation::OnAchieveStatus& on_status,
-                                          const std::function<bool()>& cancelled) {
+loop::AchieveReport AchieveRemotely(const loop::AchieveQuery& query,
+                                    const loop::OnAchieveStatus& on_status,
+                                    const std::function<bool()>& cancelled) {
   int no_arguments = 0;
   ros::init(no_arguments, nullptr, "hires_achieve",
             ros::init_options::AnonymousName | ros::init_options::NoSigintHandler);
-  evaluation::AchieveQuery rest = query;
+  loop::AchieveQuery rest = query;
   rest.wait = AwaitPublisher(kAchieveAction + std::string("/status"), query.wait, cancelled,
                              "topple.launch");
   return Conversation(rest, on_status, cancelled).Run();

@@ -202,7 +202,7 @@ std::string RankingsText(const ImagineResult& then, const ImagineResult& now) {
     rows.push_back(TableRow("then", then, i));
     rows.push_back(TableRow("now", now, i));
   }
-  return evaluation::FormatTable(rows);
+  return reports::FormatTable(rows);
 }
 
 std::string VerdictText(const ReplayedRequest& replayed) {
@@ -238,7 +238,7 @@ ordered_json AnswerJson(const ImagineResult& result) {
             {"ranking", ordered_json::array()},
             {"seed", result.seed}};
   }
-  return evaluation::ToJson(FromMsg(result));
+  return reports::ToJson(FromMsg(result));
 }
 
 // ---------------------------------------------------------------- the verb
@@ -292,7 +292,7 @@ int ThreadsOf(const ReplayOptions& options) {
 void ShowProgress(const imagination::Interim& interim) {
   if (isatty(STDERR_FILENO) == 0) return;
   const bool is_done = interim.progress.done >= interim.progress.total;
-  std::cerr << '\r' << (is_done ? "" : evaluation::ProgressLine(interim.progress)) << "\033[K"
+  std::cerr << '\r' << (is_done ? "" : reports::ProgressLine(interim.progress)) << "\033[K"
             << std::flush;
 }
 
@@ -335,14 +335,14 @@ int ReplayRequests(const ReplayOptions& options, const std::string& package_fold
   if (!options.json.empty()) {
     ordered_json json = ordered_json::array();
     for (const ReplayedRequest& request : replayed) json.push_back(ReplayJson(request));
-    evaluation::WriteJson(json, options.json);
+    reports::WriteJson(json, options.json);
   }
   return interrupted ? cli::kExitCancelled : ReplayExitCode(replayed);
 }
 
 int Replay(const ReplayOptions& options, const std::string& package_folder) {
   for (const int signal : {SIGINT, SIGTERM, SIGHUP}) std::signal(signal, OnInterrupt);
-  if (!options.json.empty()) evaluation::RequireFolderOf(options.json);
+  if (!options.json.empty()) reports::RequireFolderOf(options.json);
   EpisodeReplay episode = options.episode;
   episode.bag = options.bag;
   episode.json = options.json;

@@ -29,7 +29,7 @@ void Work(ros::NodeHandle* nh) {
 /// The Blackboard, which reads the knowledge files as well, does not know of the scenario.
 void WarnOfNames(const std::string& path) {
   if (path.empty()) return;
-  const auto scenario = hires::evaluation::ReadScenario(path);
+  const auto scenario = hires::sim_robot::ReadScenario(path);
   for (const auto& misfit : NamesThatDoNotFit(scenario, path, scenario.task)) {
     hires::base::Log(hires::base::LogLevel::kWarn, misfit);
   }

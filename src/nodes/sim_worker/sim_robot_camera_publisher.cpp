@@ -29,7 +29,7 @@ void Send(Message msg, const std::string& frame, const ros::Time& stamp,
 
 SimRobotCameraPublisher::SimRobotCameraPublisher(const hires::control::SensorNames& names,
                                                  const hires::robot::Robot& robot,
-                                                 hires::evaluation::SimRobotCameras* cameras,
+                                                 hires::sim_robot::SimRobotCameras* cameras,
                                                  ros::NodeHandle* nh)
     : cameras_(*cameras) {
   using sensor_msgs::CameraInfo;
@@ -57,12 +57,12 @@ std::string SimRobotCameraPublisher::OpticalFrameOf(const hires::robot::Robot& r
   return frame;
 }
 
-void SimRobotCameraPublisher::PublishDepthIfDue(const hires::evaluation::SimRobotWorld& world,
+void SimRobotCameraPublisher::PublishDepthIfDue(const hires::sim_robot::SimRobotWorld& world,
                                                 const ros::Time& stamp) {
   if (cameras_.IsDepthDue(world)) PublishDepth(world, stamp);
 }
 
-bool SimRobotCameraPublisher::PublishDepth(const hires::evaluation::SimRobotWorld& world,
+bool SimRobotCameraPublisher::PublishDepth(const hires::sim_robot::SimRobotWorld& world,
                                            const ros::Time& stamp) {
   const bool wants_cloud = IsHeard(depth_cloud_);
   hires::perception::PointCloud cloud;
@@ -87,7 +87,7 @@ bool SimRobotCameraPublisher::PublishDepth(const hires::evaluation::SimRobotWorl
   return wants_cloud;
 }
 
-void SimRobotCameraPublisher::PublishHeatIfDue(const hires::evaluation::SimRobotWorld& world,
+void SimRobotCameraPublisher::PublishHeatIfDue(const hires::sim_robot::SimRobotWorld& world,
                                                const ros::Time& stamp) {
   if (!cameras_.IsHeatDue(world)) return;
   const auto send = [&](const auto& msg, const ros::Publisher& publisher) {

@@ -21,20 +21,20 @@ class SimRobotCameraPublisher {
   /// @param cameras  outlives this.
   SimRobotCameraPublisher(const hires::control::SensorNames& names,
                           const hires::robot::Robot& robot,
-                          hires::evaluation::SimRobotCameras* cameras, ros::NodeHandle* nh);
+                          hires::sim_robot::SimRobotCameras* cameras, ros::NodeHandle* nh);
 
-  void PublishDepthIfDue(const hires::evaluation::SimRobotWorld& world, const ros::Time& stamp);
+  void PublishDepthIfDue(const hires::sim_robot::SimRobotWorld& world, const ros::Time& stamp);
   /// Whether it is due or not.
   /// @return whether somebody gets the cloud.
-  bool PublishDepth(const hires::evaluation::SimRobotWorld& world, const ros::Time& stamp);
-  void PublishHeatIfDue(const hires::evaluation::SimRobotWorld& world, const ros::Time& stamp);
+  bool PublishDepth(const hires::sim_robot::SimRobotWorld& world, const ros::Time& stamp);
+  void PublishHeatIfDue(const hires::sim_robot::SimRobotWorld& world, const ros::Time& stamp);
 
   long num_drawn() const { return num_drawn_; }  ///< clouds and pictures so far; any thread may ask
 
  private:
   std::string OpticalFrameOf(const hires::robot::Robot& robot, const std::string& link);
 
-  hires::evaluation::SimRobotCameras& cameras_;
+  hires::sim_robot::SimRobotCameras& cameras_;
   std::optional<tf2_ros::StaticTransformBroadcaster> static_tf_;  // if there is a frame to tell
   std::atomic<long> num_drawn_{0};
   std::string depth_frame_, heat_frame_;

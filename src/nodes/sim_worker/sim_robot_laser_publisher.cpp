@@ -12,7 +12,7 @@
 namespace hires_ros {
 namespace {
 
-using hires::evaluation::kSensorTick;
+using hires::sim_robot::kSensorTick;
 
 constexpr double kTickTime = 0.001 * static_cast<double>(kSensorTick);  // [s]
 constexpr std::uint32_t kScanQueue = 100;
@@ -22,7 +22,7 @@ constexpr std::uint32_t kCloudQueue = 2;
 
 SimRobotLaserPublisher::SimRobotLaserPublisher(const hires::control::RobotNames& names,
                                                const hires::robot::Robot& robot, bool tells_place,
-                                               const hires::evaluation::SimRobotLasers* lasers,
+                                               const hires::sim_robot::SimRobotLasers* lasers,
                                                ros::NodeHandle* nh)
     : lasers_(*lasers),
       robot_(robot),
@@ -43,14 +43,14 @@ SimRobotLaserPublisher::SimRobotLaserPublisher(const hires::control::RobotNames&
   }
 }
 
-void SimRobotLaserPublisher::AddTilt(const hires::evaluation::SimRobotWorld& world,
+void SimRobotLaserPublisher::AddTilt(const hires::sim_robot::SimRobotWorld& world,
                                      hires::robot::JointPositions* joints) const {
   if (!lasers_.has_tilting_laser()) return;
   (*joints)[robot_.profile.sensors.tilting_laser->joint] = lasers_.TiltPhase(world).angle;
 }
 
 std::vector<std::string> SimRobotLaserPublisher::PublishTick(
-    const hires::evaluation::SimRobotWorld& world, const ros::Time& stamp) {
+    const hires::sim_robot::SimRobotWorld& world, const ros::Time& stamp) {
   std::vector<std::string> topics;
   if (IsHeard(tray_scan_)) {
     sensor_msgs::LaserScan scan = ToMsg(lasers_.tray(), lasers_.TrayScan(world), kTickTime);
@@ -72,8 +72,8 @@ std::vector<std::string> SimRobotLaserPublisher::PublishTick(
   return topics;
 }
 
-void SimRobotLaserPublisher::PublishLook(const hires::evaluation::SimRobotWorld& world,
-                                         const hires::evaluation::SensorReadings& readings,
+void SimRobotLaserPublisher::PublishLook(const hires::sim_robot::SimRobotWorld& world,
+                                         const hires::sim_robot::SensorReadings& readings,
                                          const ros::Time& stamp) {
   const bool wants_cloud = IsHeard(tilt_cloud_);
   if (!lasers_.IsTiltDue(world) || (!wants_cloud && !IsHeard(tilt_scan_))) return;
@@ -92,7 +92,7 @@ void SimRobotLaserPublisher::PublishLook(const hires::evaluation::SimRobotWorld&
 }
 
 /// Ticks have their own; between them the joint may turn back, which tf would not know.
-void SimRobotLaserPublisher::PublishTilt(const hires::evaluation::SimRobotWorld& world,
+void SimRobotLaserPublisher::PublishTilt(const hires::sim_robot::SimRobotWorld& world,
                                          const ros::Time& stamp) {
   if (world.milliseconds() % kSensorTick == 0) return;
   const hires::robot::RobotModel& model = robot_.model;

@@ -20,31 +20,31 @@ class SimRobotLaserPublisher {
   ///                     odometry's frame is.
   /// @param lasers  outlives this.
   SimRobotLaserPublisher(const hires::control::RobotNames& names, const hires::robot::Robot& robot,
-                         bool tells_place, const hires::evaluation::SimRobotLasers* lasers,
+                         bool tells_place, const hires::sim_robot::SimRobotLasers* lasers,
                          ros::NodeHandle* nh);
 
   /// The tray's scan, and the cloud of a sweep that is over: for each tick.
   /// @return the topics on which that was sent.
-  std::vector<std::string> PublishTick(const hires::evaluation::SimRobotWorld& world,
+  std::vector<std::string> PublishTick(const hires::sim_robot::SimRobotWorld& world,
                                        const ros::Time& stamp);
 
   /// The nodding laser's, if one is due: for each look between two ticks.
   /// @param readings  of the last tick.
-  void PublishLook(const hires::evaluation::SimRobotWorld& world,
-                   const hires::evaluation::SensorReadings& readings, const ros::Time& stamp);
+  void PublishLook(const hires::sim_robot::SimRobotWorld& world,
+                   const hires::sim_robot::SensorReadings& readings, const ros::Time& stamp);
 
   /// Turns the joints of a tick to what tf tells of them.
-  void AddTilt(const hires::evaluation::SimRobotWorld& world,
+  void AddTilt(const hires::sim_robot::SimRobotWorld& world,
                hires::robot::JointPositions* joints) const;
 
  private:
-  void PublishTilt(const hires::evaluation::SimRobotWorld& world, const ros::Time& stamp);
+  void PublishTilt(const hires::sim_robot::SimRobotWorld& world, const ros::Time& stamp);
 
-  const hires::evaluation::SimRobotLasers& lasers_;
+  const hires::sim_robot::SimRobotLasers& lasers_;
   const hires::robot::Robot& robot_;
   const hires::control::SensorNames names_;
   const std::string odometry_frame_;
-  std::optional<hires::evaluation::SweepCloud> sweep_;
+  std::optional<hires::sim_robot::SweepCloud> sweep_;
   std::optional<hires::perception::PointCloud>
       cloud_;                      // in the odometry's frame, of the last sweep
   std::optional<ros::Time> sent_;  // when that was sent

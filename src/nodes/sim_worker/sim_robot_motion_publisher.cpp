@@ -46,7 +46,7 @@ SimRobotMotionPublisher::SimRobotMotionPublisher(const hires::control::RobotName
 }
 
 /// The unit first: a filter waits for it with the odometry.
-void SimRobotMotionPublisher::Publish(const hires::evaluation::SensorReadings& readings,
+void SimRobotMotionPublisher::Publish(const hires::sim_robot::SensorReadings& readings,
                                       const ros::Time& stamp) {
   if (R_BI_ && readings.inertia) {
     sensor_msgs::Imu inertia = ToMsg(*readings.inertia, *R_BI_);
@@ -63,7 +63,7 @@ void SimRobotMotionPublisher::Publish(const hires::evaluation::SensorReadings& r
   odometry_.publish(odometry);
 }
 
-void SimRobotMotionPublisher::TellStart(const hires::evaluation::SimRobotWorld& world,
+void SimRobotMotionPublisher::TellStart(const hires::sim_robot::SimRobotWorld& world,
                                         const ros::Time& stamp) {
   if (!initial_pose_) return;
   const std::uint32_t num_listeners = initial_pose_.getNumSubscribers();

@@ -23,10 +23,10 @@ class SimRobotMotionPublisher {
   SimRobotMotionPublisher(const hires::control::RobotNames& names, const hires::robot::Robot& robot,
                           bool tells_place, ros::NodeHandle* nh);
 
-  void Publish(const hires::evaluation::SensorReadings& readings, const ros::Time& stamp);
+  void Publish(const hires::sim_robot::SensorReadings& readings, const ros::Time& stamp);
 
   /// Tells the start to whoever began to listen, while the robot stands there.
-  void TellStart(const hires::evaluation::SimRobotWorld& world, const ros::Time& stamp);
+  void TellStart(const hires::sim_robot::SimRobotWorld& world, const ros::Time& stamp);
 
  private:
   std::string map_frame_, odometry_frame_, base_frame_, inertia_frame_;

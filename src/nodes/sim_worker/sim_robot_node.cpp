@@ -23,9 +23,9 @@ using hires::base::ConfigError;
 using hires::base::LogLevel;
 using hires::control::GripperInterface;
 using hires::control::TrajectoryInterface;
-using hires::evaluation::kJointTick;
-using hires::evaluation::kSensorTick;
 using hires::robot::Command;
+using hires::sim_robot::kJointTick;
+using hires::sim_robot::kSensorTick;
 
 constexpr auto kShort = std::chrono::milliseconds(20);    // between two looks at stop_
 constexpr auto kRepeat = std::chrono::milliseconds(100);  // an unanswered tick is sent again
@@ -38,7 +38,7 @@ SimRobotNode::SimRobotNode(const SimRobotParams& params,
                            const hires::imagination::ImaginationSetup& setup, ros::NodeHandle* nh)
     : params_(params),
       robot_(setup.scene->robot),
-      world_(setup, hires::evaluation::StartOf(setup, params.scenario, params.area), params.seed,
+      world_(setup, hires::sim_robot::StartOf(setup, params.scenario, params.area), params.seed,
              params.truth),
       publisher_(params, setup, world_, nh),
       truth_(setup.standing),
@@ -246,8 +246,8 @@ void SimRobotNode::AdvanceOneTick() {
   for (long done = 0; done < kSensorTick; done += kJointTick) {
     if (done > 0) publisher_.PublishFast(world_, world_.Sense());
     if (done == 0 || !params_.lockstep) Listen();
-    hires::evaluation::PlayJointTick(&world_, &truth_,
-                                     [this] { publisher_.PublishLook(world_, readings_); });
+    hires::sim_robot::PlayJointTick(&world_, &truth_,
+                                    [this] { publisher_.PublishLook(world_, readings_); });
   }
   simulated_ = 0.001 * static_cast<double>(world_.milliseconds());
 }

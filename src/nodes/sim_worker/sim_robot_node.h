@@ -76,7 +76,7 @@ class SimRobotNode {
 
   const SimRobotParams params_;
   const hires::robot::Robot& robot_;
-  hires::evaluation::SimRobotWorld world_;
+  hires::sim_robot::SimRobotWorld world_;
   SimRobotPublisher publisher_;
   hires::simulation::TruthRecord truth_;
   hires::simulation::CommandInbox inbox_;
@@ -89,7 +89,7 @@ class SimRobotNode {
   std::optional<Ack> ack_;                   // of the present tick
   std::optional<std::string> middle_layer_;  // who acknowledged last
   std::multiset<std::string> listeners_;     // to ticks, by node
-  hires::evaluation::SensorReadings readings_;
+  hires::sim_robot::SensorReadings readings_;
   std::atomic<bool> is_held_;
   int num_steps_{0};        // ticks to play while held
   Steady::time_point due_;  // when the next tick is, at the wanted pace

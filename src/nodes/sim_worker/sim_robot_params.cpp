@@ -16,12 +16,12 @@ using hires::base::ParamReader;
 
 /// Nothing uncertain means that the sensors tell the truth, too.
 void DropNoiseIfCertain(SimRobotParams* params) {
-  if (params->setup.uncertainty == "none") hires::evaluation::DropNoise(&params->sensors);
+  if (params->setup.uncertainty == "none") hires::sim_robot::DropNoise(&params->sensors);
 }
 
 /// @param path  of the file that the truths lie beside.
-hires::evaluation::Truth TruthOf(const std::string& name, const std::string& path) {
-  return hires::evaluation::FindTruth(name, hires::imagination::ResolvePath("truths", path));
+hires::sim_robot::Truth TruthOf(const std::string& name, const std::string& path) {
+  return hires::sim_robot::FindTruth(name, hires::imagination::ResolvePath("truths", path));
 }
 
 void OverridePrivate(const std::string& path, SimRobotParams* params) {
@@ -36,8 +36,7 @@ void OverridePrivate(const std::string& path, SimRobotParams* params) {
   override_text("area", &params->area);
   const std::string truth = PrivateText("truth").value_or("");
   if (!truth.empty()) params->truth = TruthOf(truth, path);
-  params->truth =
-      hires::evaluation::WithSensing(params->truth, PrivateText("sensing").value_or(""));
+  params->truth = hires::sim_robot::WithSensing(params->truth, PrivateText("sensing").value_or(""));
   int seed = static_cast<int>(params->seed);
   Override("seed", PrivateInt("seed"), Between(0, std::numeric_limits<int>::max()), &seed);
   params->seed = static_cast<std::uint64_t>(seed);
@@ -45,7 +44,7 @@ void OverridePrivate(const std::string& path, SimRobotParams* params) {
   params->lockstep = PrivateBool("lockstep").value_or(params->lockstep);
   params->hold = PrivateBool("hold").value_or(params->hold);
   params->tells_place = PrivateBool("tells_place").value_or(params->tells_place);
-  params->sensors.cameras.temperatures = hires::evaluation::TemperaturesOf(params->scenario);
+  params->sensors.cameras.temperatures = hires::sim_robot::TemperaturesOf(params->scenario);
 }
 
 }  // namespace
@@ -64,7 +63,7 @@ SimRobotParams ReadSimRobotParams(const std::string& path) {
   params.lockstep = in.GetBool("lockstep");
   params.hold = in.GetBool("hold");
   params.tells_place = in.GetBool("tells_place");
-  params.sensors = hires::evaluation::ReadSimSensorParams(in);
+  params.sensors = hires::sim_robot::ReadSimSensorParams(in);
   in.RejectUnknownKeys();
   DropNoiseIfCertain(&params);
   return params;
@@ -80,7 +79,7 @@ SimRobotParams LoadSimRobotParams() {
   params.names = LoadRobotNames();
   OverridePrivate(path, &params);
   if (!params.tells_place) {
-    params.truth = hires::evaluation::WithoutPlace(params.truth, params.setup.self_localisation);
+    params.truth = hires::sim_robot::WithoutPlace(params.truth, params.setup.self_localisation);
   }
   DropNoiseIfCertain(&params);
   return params;

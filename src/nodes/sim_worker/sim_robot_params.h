@@ -12,7 +12,7 @@ namespace hires_ros {
 struct SimRobotParams {
   hires::imagination::SetupConfig setup;
   hires::control::RobotNames names;
-  hires::evaluation::Truth truth;
+  hires::sim_robot::Truth truth;
   std::string scenario;  ///< file; empty: the world's own objects, the robot at `area`
   std::string area{"nearStartArea1"};
   std::uint64_t seed{1};  ///< of the hidden truth and of all noise
@@ -22,7 +22,7 @@ struct SimRobotParams {
   /// Say where it is, as a robot with a localisation of its own; else wheels and inertial unit say
   /// what they measure, and `truth` is one WithoutPlace.
   bool tells_place{true};
-  hires::evaluation::SimSensorParams sensors;
+  hires::sim_robot::SimSensorParams sensors;
 };
 
 /// Reads a file like config/sim_robot.yaml; it does not say the names.

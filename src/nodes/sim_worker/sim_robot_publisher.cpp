@@ -39,11 +39,11 @@ constexpr int kShownIndex = 0;  // of the markers; workers count from 1
 
 SimRobotPublisher::SimRobotPublisher(const SimRobotParams& params,
                                      const hires::imagination::ImaginationSetup& setup,
-                                     const hires::evaluation::SimRobotWorld& world,
+                                     const hires::sim_robot::SimRobotWorld& world,
                                      ros::NodeHandle* nh)
     : params_(params),
       scene_(setup.scene),
-      sensors_(hires::evaluation::SensorsOf(params.truth, params.sensors), params.seed,
+      sensors_(hires::sim_robot::SensorsOf(params.truth, params.sensors), params.seed,
                world.scene()),
       cameras_(params.names.sensors, scene_->robot, &sensors_.cameras(), nh),
       lasers_(params.names, scene_->robot, params.tells_place, &sensors_.lasers(), nh),
@@ -73,20 +73,20 @@ SimRobotPublisher::SimRobotPublisher(const SimRobotParams& params,
   PublishMap();
 }
 
-ros::Time SimRobotPublisher::StampOf(const hires::evaluation::SimRobotWorld& world) {
+ros::Time SimRobotPublisher::StampOf(const hires::sim_robot::SimRobotWorld& world) {
   ros::Time stamp;
   stamp.fromNSec(1000000000ULL + 1000000ULL * static_cast<std::uint64_t>(world.milliseconds()));
   return stamp;
 }
 
-void SimRobotPublisher::PublishClock(const hires::evaluation::SimRobotWorld& world) {
+void SimRobotPublisher::PublishClock(const hires::sim_robot::SimRobotWorld& world) {
   rosgraph_msgs::Clock clock;
   clock.clock = StampOf(world);
   clock_.publish(clock);
 }
 
-void SimRobotPublisher::PublishFast(const hires::evaluation::SimRobotWorld& world,
-                                    const hires::evaluation::SensorReadings& readings) {
+void SimRobotPublisher::PublishFast(const hires::sim_robot::SimRobotWorld& world,
+                                    const hires::sim_robot::SensorReadings& readings) {
   const ros::Time stamp = StampOf(world);
   joints_.publish(ToMsg(readings.joints, stamp));
   motion_.Publish(readings, stamp);
@@ -94,8 +94,7 @@ void SimRobotPublisher::PublishFast(const hires::evaluation::SimRobotWorld& worl
 }
 
 std::vector<std::string> SimRobotPublisher::PublishTick(
-    const hires::evaluation::SimRobotWorld& world,
-    const hires::evaluation::SensorReadings& readings,
+    const hires::sim_robot::SimRobotWorld& world, const hires::sim_robot::SensorReadings& readings,
     const hires::simulation::TruthRecord& truth) {
   const ros::Time stamp = StampOf(world);
   std::vector<std::string> sensors{kTransforms, params_.names.joint_states, params_.names.odometry};
@@ -113,13 +112,13 @@ std::vector<std::string> SimRobotPublisher::PublishTick(
   return sensors;
 }
 
-void SimRobotPublisher::PublishLook(const hires::evaluation::SimRobotWorld& world,
-                                    const hires::evaluation::SensorReadings& readings) {
+void SimRobotPublisher::PublishLook(const hires::sim_robot::SimRobotWorld& world,
+                                    const hires::sim_robot::SensorReadings& readings) {
   lasers_.PublishLook(world, readings, StampOf(world));
 }
 
-void SimRobotPublisher::PublishTransforms(const hires::evaluation::SimRobotWorld& world,
-                                          const hires::evaluation::SensorReadings& readings,
+void SimRobotPublisher::PublishTransforms(const hires::sim_robot::SimRobotWorld& world,
+                                          const hires::sim_robot::SensorReadings& readings,
                                           const ros::Time& stamp) {
   const hires::robot::Robot& robot = scene_->robot;
   tf2_msgs::TFMessage correction, links;
@@ -144,7 +143,7 @@ void SimRobotPublisher::PublishTransforms(const hires::evaluation::SimRobotWorld
   tf_.publish(links);
 }
 
-void SimRobotPublisher::PublishLocalisation(const hires::evaluation::SensorReadings& readings,
+void SimRobotPublisher::PublishLocalisation(const hires::sim_robot::SensorReadings& readings,
                                             const ros::Time& stamp) {
   std_msgs::Header header;
   header.stamp = stamp;
@@ -152,8 +151,8 @@ void SimRobotPublisher::PublishLocalisation(const hires::evaluation::SensorReadi
   amcl_.publish(ToMsg(UncertainPose{readings.X_MB, readings.covariance}, header));
 }
 
-void SimRobotPublisher::PublishScan(const hires::evaluation::SimRobotWorld& world,
-                                    const hires::evaluation::SensorReadings& readings,
+void SimRobotPublisher::PublishScan(const hires::sim_robot::SimRobotWorld& world,
+                                    const hires::sim_robot::SensorReadings& readings,
                                     const ros::Time& stamp) {
   const std::vector<double> ranges = sensors_.Scan(world, readings);
   const hires::simulation::LaserParams& laser = sensors_.laser();
@@ -164,8 +163,8 @@ void SimRobotPublisher::PublishScan(const hires::evaluation::SimRobotWorld& worl
 }
 
 /// @return whether somebody is going to tell of what is seen now.
-bool SimRobotPublisher::PublishLookOf(const hires::evaluation::SimRobotWorld& world,
-                                      const hires::evaluation::SensorReadings& readings,
+bool SimRobotPublisher::PublishLookOf(const hires::sim_robot::SimRobotWorld& world,
+                                      const hires::sim_robot::SensorReadings& readings,
                                       const ros::Time& stamp) {
   if (sensors_.sees_pictures()) {
     if (!sensors_.BeginLook(world, readings)) return false;
@@ -181,7 +180,7 @@ bool SimRobotPublisher::PublishLookOf(const hires::evaluation::SimRobotWorld& wo
   return true;
 }
 
-void SimRobotPublisher::PublishTruth(const hires::evaluation::SimRobotWorld& world,
+void SimRobotPublisher::PublishTruth(const hires::sim_robot::SimRobotWorld& world,
                                      const hires::simulation::TruthRecord& truth,
                                      const ros::Time& stamp) {
   hires::WorldState state = ToMsg(world.simulator().GetWorldState());

@@ -28,50 +28,50 @@ class SimRobotPublisher {
  public:
   /// @param setup  what the robot is told: the map is of it; `world` is what there is to see.
   SimRobotPublisher(const SimRobotParams& params, const hires::imagination::ImaginationSetup& setup,
-                    const hires::evaluation::SimRobotWorld& world, ros::NodeHandle* nh);
+                    const hires::sim_robot::SimRobotWorld& world, ros::NodeHandle* nh);
 
   /// What comes at 100 Hz: joints, odometry and inertial unit, then the clock, so that no node
   /// knows a time whose sensors are not on their way.
-  void PublishFast(const hires::evaluation::SimRobotWorld& world,
-                   const hires::evaluation::SensorReadings& readings);
+  void PublishFast(const hires::sim_robot::SimRobotWorld& world,
+                   const hires::sim_robot::SensorReadings& readings);
 
   /// What comes with every tick of 0.05 s, before the fast ones of the same moment: transforms,
   /// localisation (of a robot that tells its place), laser, and detector and cameras when they are
   /// due. Called again, it publishes the same again.
   /// @return topics that have a message of this stamp, fast ones included.
-  std::vector<std::string> PublishTick(const hires::evaluation::SimRobotWorld& world,
-                                       const hires::evaluation::SensorReadings& readings,
+  std::vector<std::string> PublishTick(const hires::sim_robot::SimRobotWorld& world,
+                                       const hires::sim_robot::SensorReadings& readings,
                                        const hires::simulation::TruthRecord& truth);
 
   /// What comes between two ticks: scans of the laser that nods. For each look for falls.
   /// @param readings  of the last tick.
-  void PublishLook(const hires::evaluation::SimRobotWorld& world,
-                   const hires::evaluation::SensorReadings& readings);
+  void PublishLook(const hires::sim_robot::SimRobotWorld& world,
+                   const hires::sim_robot::SensorReadings& readings);
 
-  void PublishClock(const hires::evaluation::SimRobotWorld& world);
+  void PublishClock(const hires::sim_robot::SimRobotWorld& world);
   /// Where objects are recognised by another program in the clouds.
   bool sees_pictures() const { return sensors_.sees_pictures(); }
   long num_drawn() const { return cameras_.num_drawn(); }  ///< pictures; any thread may ask
   long num_recognised() const { return num_recognised_; }  ///< answers to them; likewise
   static ros::Time StampOf(
-      const hires::evaluation::SimRobotWorld& world);  ///< begins at 1 s; 0 means "no time yet"
+      const hires::sim_robot::SimRobotWorld& world);  ///< begins at 1 s; 0 means "no time yet"
 
  private:
-  void PublishTransforms(const hires::evaluation::SimRobotWorld& world,
-                         const hires::evaluation::SensorReadings& readings, const ros::Time& stamp);
-  void PublishLocalisation(const hires::evaluation::SensorReadings& readings,
+  void PublishTransforms(const hires::sim_robot::SimRobotWorld& world,
+                         const hires::sim_robot::SensorReadings& readings, const ros::Time& stamp);
+  void PublishLocalisation(const hires::sim_robot::SensorReadings& readings,
                            const ros::Time& stamp);
-  void PublishScan(const hires::evaluation::SimRobotWorld& world,
-                   const hires::evaluation::SensorReadings& readings, const ros::Time& stamp);
-  bool PublishLookOf(const hires::evaluation::SimRobotWorld& world,
-                     const hires::evaluation::SensorReadings& readings, const ros::Time& stamp);
-  void PublishTruth(const hires::evaluation::SimRobotWorld& world,
+  void PublishScan(const hires::sim_robot::SimRobotWorld& world,
+                   const hires::sim_robot::SensorReadings& readings, const ros::Time& stamp);
+  bool PublishLookOf(const hires::sim_robot::SimRobotWorld& world,
+                     const hires::sim_robot::SensorReadings& readings, const ros::Time& stamp);
+  void PublishTruth(const hires::sim_robot::SimRobotWorld& world,
                     const hires::simulation::TruthRecord& truth, const ros::Time& stamp);
   void PublishMap();
 
   const SimRobotParams params_;
   std::shared_ptr<const hires::simulation::Scene> scene_;
-  hires::evaluation::SimRobotSensors sensors_;
+  hires::sim_robot::SimRobotSensors sensors_;
   SimRobotCameraPublisher cameras_;
   SimRobotLaserPublisher lasers_;
   SimRobotMotionPublisher motion_;

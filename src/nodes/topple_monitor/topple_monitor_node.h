@@ -47,8 +47,8 @@ class ToppleMonitorNode {
 
   const ToppleMonitorParams params_;
   hires::knowledge::ExperienceStore store_;
-  hires::evaluation::LoadFollower follower_;
-  hires::evaluation::ExperienceWriter writer_;
+  hires::reports::LoadFollower follower_;
+  hires::reports::ExperienceWriter writer_;
   std::deque<Moment> moments_;                  // of which one half came, in that order
   ros::Time last_;                              // moment that was used
   std::map<std::string, std::string> actions_;  // what the robot does, by id of the goal

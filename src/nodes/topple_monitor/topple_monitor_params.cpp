@@ -24,7 +24,7 @@ ToppleMonitorParams LoadToppleMonitorParams() {
   params.run = PrivateText("run").value_or("");
   if (params.run.empty()) params.run = hires::base::LocalTime();
 
-  params.config = hires::evaluation::ReadToppleMonitorConfig(hires::base::ParamReader::FromFile(
+  params.config = hires::reports::ReadToppleMonitorConfig(hires::base::ParamReader::FromFile(
       PrivateText("config").value_or(folder + "topple_monitor.yaml")));
 
   auto scene = hires::imagination::ReadSetupConfig(folder + "scene.yaml");

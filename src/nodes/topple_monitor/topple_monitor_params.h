@@ -9,7 +9,7 @@
 namespace hires_ros {
 
 struct ToppleMonitorParams {
-  hires::evaluation::ToppleMonitorConfig config;
+  hires::reports::ToppleMonitorConfig config;
   hires::imagination::RolloutParams rollout;  ///< with the thresholds of Eq. 5.1
   hires::robot::Robot robot;
   std::string store;  ///< file of experiences

@@ -5,7 +5,7 @@
 #include <filesystem>
 #include <utility>
 
-namespace hires::evaluation {
+namespace hires::reports {
 
 BagRotation::BagRotation(std::string folder, std::string start, const BagLimits& limits)
     : folder_(std::move(folder)), start_(std::move(start)), limits_(limits) {}
@@ -27,4 +27,4 @@ std::string BagRotation::final_path() const {
   return (std::filesystem::path(folder_) / name).string();
 }
 
-}  // namespace hires::evaluation
+}  // namespace hires::reports

@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <string>
 
-namespace hires::evaluation {
+namespace hires::reports {
 
 /// When a recorder begins its next bag.
 struct BagLimits {
@@ -36,4 +36,4 @@ class BagRotation {
   double begun_{0.0};  // [s] of the present bag
 };
 
-}  // namespace hires::evaluation
+}  // namespace hires::reports

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <utility>
 
-namespace hires::evaluation {
+namespace hires::reports {
 namespace {
 
 using sensing::Missing;
@@ -182,4 +182,4 @@ void EpisodeBuilder::Add(const RobotEstimate& now) {
   episode.samples.push_back(std::move(sample));
 }
 
-}  // namespace hires::evaluation
+}  // namespace hires::reports

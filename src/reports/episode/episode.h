@@ -12,7 +12,7 @@
 #include "hires/sensing/object_estimator.h"
 #include "hires/sensing/robot_state_estimator.h"
 
-namespace hires::evaluation {
+namespace hires::reports {
 
 /// The robot and what it knew, at one moment of an episode.
 struct EpisodeSample {
@@ -100,4 +100,4 @@ class EpisodeBuilder {
   std::map<std::string, int> dropped_;
 };
 
-}  // namespace hires::evaluation
+}  // namespace hires::reports

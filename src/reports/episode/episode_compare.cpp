@@ -6,7 +6,7 @@
 #include "base/parallel.h"
 #include "hires/base/error.h"
 
-namespace hires::evaluation {
+namespace hires::reports {
 namespace {
 
 using imagination::RolloutResult;
@@ -111,4 +111,4 @@ std::optional<ImaginedAction> ImagineStep(const imagination::ImaginationSetup& s
   return ImaginedAction{imagination::SumUp(results), {}};
 }
 
-}  // namespace hires::evaluation
+}  // namespace hires::reports

@@ -10,7 +10,7 @@
 #include "hires/imagination/evidence.h"
 #include "reports/episode/episode_steps.h"
 
-namespace hires::evaluation {
+namespace hires::reports {
 
 /// What imagination says of a step.
 struct ImaginedAction {
@@ -64,4 +64,4 @@ std::string EpisodeTable(const std::vector<ComparedStep>& steps);
 std::string EpisodeSummary(const std::vector<ComparedStep>& steps);
 nlohmann::ordered_json EpisodeJson(const std::vector<ComparedStep>& steps);
 
-}  // namespace hires::evaluation
+}  // namespace hires::reports

@@ -11,7 +11,7 @@
 #include "hires/base/text.h"
 #include "hires/translation/classification.h"
 
-namespace hires::evaluation {
+namespace hires::reports {
 namespace {
 
 using imagination::ImaginationSetup;
@@ -263,4 +263,4 @@ imagination::StartState StartOf(const Episode& episode, const EpisodeSample& sam
   return start;
 }
 
-}  // namespace hires::evaluation
+}  // namespace hires::reports

@@ -4,7 +4,7 @@
 
 #include "reports/episode/episode_steps.h"
 
-namespace hires::evaluation {
+namespace hires::reports {
 
 /// Drives and motions of arms and torso that an episode shows by itself, by begin. A drive is taken
 /// for move_base_blind where it is short and straight, else for move_base_param with the slowest
@@ -18,4 +18,4 @@ std::vector<EpisodeStep> MotionsOf(const Episode& episode,
 /// The state of a sample, to imagine from.
 imagination::StartState StartOf(const Episode& episode, const EpisodeSample& sample);
 
-}  // namespace hires::evaluation
+}  // namespace hires::reports

@@ -9,7 +9,7 @@
 #include "reports/report_table.h"
 #include "reports/statistics.h"
 
-namespace hires::evaluation {
+namespace hires::reports {
 namespace {
 
 using nlohmann::ordered_json;
@@ -129,4 +129,4 @@ ordered_json EpisodeJson(const std::vector<ComparedStep>& steps) {
           {"duration_error_magnitude", MeanMagnitude(errors)}};
 }
 
-}  // namespace hires::evaluation
+}  // namespace hires::reports

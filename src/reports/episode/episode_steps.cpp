@@ -8,7 +8,7 @@
 #include "hires/base/error.h"
 #include "reports/episode/episode_motions.h"
 
-namespace hires::evaluation {
+namespace hires::reports {
 namespace {
 
 using imagination::ImaginationSetup;
@@ -74,4 +74,4 @@ ImaginationSetup WithGoals(ImaginationSetup setup, const std::vector<EpisodeStep
   return setup;
 }
 
-}  // namespace hires::evaluation
+}  // namespace hires::reports

@@ -8,7 +8,7 @@
 #include "reports/episode/episode.h"
 #include "reports/episode/episode_topics.h"
 
-namespace hires::evaluation {
+namespace hires::reports {
 
 /// One action of an episode: what was done, from which state, and how it ended.
 struct EpisodeStep {
@@ -36,4 +36,4 @@ std::vector<EpisodeStep> StepsOf(const Episode& episode, const imagination::Imag
 imagination::ImaginationSetup WithGoals(imagination::ImaginationSetup setup,
                                         const std::vector<EpisodeStep>& steps);
 
-}  // namespace hires::evaluation
+}  // namespace hires::reports

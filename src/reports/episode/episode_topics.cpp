@@ -12,7 +12,7 @@
 #include "hires/base/text.h"
 #include "hires/imagination/imagination_setup.h"
 
-namespace hires::evaluation {
+namespace hires::reports {
 namespace {
 
 using base::Between;
@@ -209,4 +209,4 @@ TopicCheck CheckTopics(const EpisodeConfig& config, const std::vector<BagTopic>&
   return check;
 }
 
-}  // namespace hires::evaluation
+}  // namespace hires::reports

@@ -6,7 +6,7 @@
 #include "hires/control/robot_names.h"
 #include "reports/episode/bag_rotation.h"
 
-namespace hires::evaluation {
+namespace hires::reports {
 
 /// What an episode's topic is there for.
 enum class TopicNeed {
@@ -79,4 +79,4 @@ struct TopicCheck {
 
 TopicCheck CheckTopics(const EpisodeConfig& config, const std::vector<BagTopic>& bag);
 
-}  // namespace hires::evaluation
+}  // namespace hires::reports

@@ -4,7 +4,7 @@
 
 #include "hires/base/error.h"
 
-namespace hires::evaluation {
+namespace hires::reports {
 
 using knowledge::ToppleState;
 
@@ -57,4 +57,4 @@ void ExperienceWriter::Flush() {
   }
 }
 
-}  // namespace hires::evaluation
+}  // namespace hires::reports

@@ -6,7 +6,7 @@
 
 #include "hires/knowledge/experience.h"
 
-namespace hires::evaluation {
+namespace hires::reports {
 
 /// Puts parts that come one by one into a store, in batches: a second's at a time, when another
 /// action begins, and at once when the load topples. What cannot be written is kept and tried again
@@ -40,4 +40,4 @@ class ExperienceWriter {
   std::string problem_;
 };
 
-}  // namespace hires::evaluation
+}  // namespace hires::reports

@@ -9,7 +9,7 @@
 #include "hires/robot/posture.h"
 #include "hires/robot/tray.h"
 
-namespace hires::evaluation {
+namespace hires::reports {
 namespace {
 
 using geometry::Pose3;
@@ -118,4 +118,4 @@ ToppleMonitorConfig ReadToppleMonitorConfig(base::ParamReader in) {
   return config;
 }
 
-}  // namespace hires::evaluation
+}  // namespace hires::reports

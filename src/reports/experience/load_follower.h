@@ -11,7 +11,7 @@
 #include "hires/world/world.h"
 #include "reports/experience/topple_monitor.h"
 
-namespace hires::evaluation {
+namespace hires::reports {
 
 /// Finds in the states of a whole run the load that a ToppleMonitor looks at: what stands freely on
 /// the robot's tray. It is followed until a hand takes it, it leaves the tray upright, it is no
@@ -62,4 +62,4 @@ struct ToppleMonitorConfig {
 /// @throws base::ConfigError naming file and key.
 ToppleMonitorConfig ReadToppleMonitorConfig(base::ParamReader in);
 
-}  // namespace hires::evaluation
+}  // namespace hires::reports

@@ -5,7 +5,7 @@
 
 #include "hires/geometry/angles.h"
 
-namespace hires::evaluation {
+namespace hires::reports {
 namespace {
 
 using knowledge::Dynamics;
@@ -85,4 +85,4 @@ bool ToppleMonitor::IsPutBack(ToppleState state) {
   return is_put_back;
 }
 
-}  // namespace hires::evaluation
+}  // namespace hires::reports

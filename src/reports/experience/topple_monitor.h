@@ -8,7 +8,7 @@
 #include "hires/imagination/rollout.h"
 #include "hires/knowledge/experience.h"
 
-namespace hires::evaluation {
+namespace hires::reports {
 
 /// Where base and load were, at one moment.
 struct ToppleSample {
@@ -50,4 +50,4 @@ class ToppleMonitor {
   bool has_fallen_{false};
 };
 
-}  // namespace hires::evaluation
+}  // namespace hires::reports

@@ -5,7 +5,7 @@
 
 #include "hires/base/text.h"
 
-namespace hires::evaluation {
+namespace hires::reports {
 namespace {
 
 using Eigen::Vector3d;
@@ -87,4 +87,4 @@ PinholeCamera OverviewCamera(const RolloutRecording& recording, int width, int h
                             kOverview);
 }
 
-}  // namespace hires::evaluation
+}  // namespace hires::reports

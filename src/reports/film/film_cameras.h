@@ -6,7 +6,7 @@
 #include "hires/imagination/rollout_recording.h"
 #include "hires/perception/pinhole_camera.h"
 
-namespace hires::evaluation {
+namespace hires::reports {
 
 /// Which object of the recording the eye should follow: one that the action names, else the one
 /// nearest to the place on the robot where things are put; nothing if there is none.
@@ -26,4 +26,4 @@ std::vector<perception::PinholeCamera> CloseCameras(const imagination::RolloutRe
 perception::PinholeCamera OverviewCamera(const imagination::RolloutRecording& recording, int width,
                                          int height);
 
-}  // namespace hires::evaluation
+}  // namespace hires::reports

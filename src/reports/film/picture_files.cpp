@@ -12,7 +12,7 @@
 
 #include "hires/base/check.h"
 
-namespace hires::evaluation {
+namespace hires::reports {
 namespace {
 
 using perception::Colour;
@@ -210,4 +210,4 @@ std::string ToGif(const std::vector<Picture>& frames, double delay, double last)
   return bytes;
 }
 
-}  // namespace hires::evaluation
+}  // namespace hires::reports

@@ -5,7 +5,7 @@
 
 #include "hires/perception/picture.h"
 
-namespace hires::evaluation {
+namespace hires::reports {
 
 /// The bytes of a PNG file.  @pre the picture has pixels.
 std::string ToPng(const perception::Picture& picture);
@@ -16,4 +16,4 @@ std::string ToPng(const perception::Picture& picture);
 /// @pre there are frames, all of one size.
 std::string ToGif(const std::vector<perception::Picture>& frames, double delay, double last);
 
-}  // namespace hires::evaluation
+}  // namespace hires::reports

@@ -2,7 +2,7 @@
 
 #include <opencv2/imgproc.hpp>
 
-namespace hires::evaluation {
+namespace hires::reports {
 namespace {
 
 constexpr int kFont = cv::FONT_HERSHEY_SIMPLEX;
@@ -25,4 +25,4 @@ void WriteLine(const std::string& text, int column, int row, int right_end,
               cv::Scalar(colour[0], colour[1], colour[2]), 1, cv::LINE_AA);
 }
 
-}  // namespace hires::evaluation
+}  // namespace hires::reports

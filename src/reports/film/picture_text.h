@@ -4,7 +4,7 @@
 
 #include "hires/perception/picture.h"
 
-namespace hires::evaluation {
+namespace hires::reports {
 
 constexpr int kTextHeight = 20;  ///< [pixels] of a line
 
@@ -17,4 +17,4 @@ void WriteLine(const std::string& text, int column, int row, int right_end,
 /// [pixels]
 int WidthOf(const std::string& text);
 
-}  // namespace hires::evaluation
+}  // namespace hires::reports

@@ -18,7 +18,7 @@
 #include "reports/film/picture_text.h"
 #include "reports/timeline.h"
 
-namespace hires::evaluation {
+namespace hires::reports {
 namespace {
 
 using imagination::RolloutEvent;
@@ -333,4 +333,4 @@ void WriteStrip(const RolloutFilm& film, int count, const std::string& path) {
   base::ReplaceTextFile(path, ToPng(strip));
 }
 
-}  // namespace hires::evaluation
+}  // namespace hires::reports

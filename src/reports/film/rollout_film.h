@@ -8,7 +8,7 @@
 #include "hires/imagination/rollout_recording.h"
 #include "hires/perception/picture.h"
 
-namespace hires::evaluation {
+namespace hires::reports {
 
 struct FilmParams {
   int view_width{336}, view_height{300};  ///< [pixels] of each of the two views
@@ -62,4 +62,4 @@ std::vector<int> MomentsOf(const imagination::RolloutRecording& recording, int c
 /// `count` close-ups side by side, as PNG.  @pre count >= 2
 void WriteStrip(const RolloutFilm& film, int count, const std::string& path);
 
-}  // namespace hires::evaluation
+}  // namespace hires::reports

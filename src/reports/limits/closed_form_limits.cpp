@@ -11,7 +11,7 @@
 #include "hires/physics/closed_forms.h"
 #include "reports/limits/motion_limits.h"
 
-namespace hires::evaluation {
+namespace hires::reports {
 namespace {
 
 constexpr double kLeastLimit = 0.01;  // of a controller that moves a base
@@ -135,4 +135,4 @@ std::vector<MotionBounds> ClosedFormLimits(const std::string& object,
           load.Turning()};
 }
 
-}  // namespace hires::evaluation
+}  // namespace hires::reports

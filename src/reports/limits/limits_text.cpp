@@ -9,7 +9,7 @@
 #include "reports/report_table.h"
 
 // What was found, for people and for machines.
-namespace hires::evaluation {
+namespace hires::reports {
 namespace {
 
 /// Rounded down: never more than what was borne.
@@ -159,4 +159,4 @@ nlohmann::ordered_json ToJson(const LimitsReport& report) {
           {"limits", limits}};
 }
 
-}  // namespace hires::evaluation
+}  // namespace hires::reports

@@ -11,7 +11,7 @@
 #include "hires/simulation/fall_watch.h"
 #include "hires/simulation/robot_simulator.h"
 
-namespace hires::evaluation {
+namespace hires::reports {
 namespace {
 
 using geometry::Twist2;
@@ -163,4 +163,4 @@ DriveOutcome PlayDrive(const DriveStage& stage, const LoadDrive& drive, const ba
   return Driver(stage, drive, &simulator).Play();
 }
 
-}  // namespace hires::evaluation
+}  // namespace hires::reports

@@ -7,7 +7,7 @@
 #include "hires/imagination/imagination_setup.h"
 #include "hires/imagination/start_state.h"
 
-namespace hires::evaluation {
+namespace hires::reports {
 
 /// What the base is told next: to come to a velocity, by steps of a local planner.
 struct DriveStep {
@@ -41,4 +41,4 @@ DriveStage MakeDriveStage(const imagination::ImaginationSetup& setup, const std:
 /// @param rng  of the truth, and of what the simulator draws.
 DriveOutcome PlayDrive(const DriveStage& stage, const LoadDrive& drive, const base::Rng& rng);
 
-}  // namespace hires::evaluation
+}  // namespace hires::reports

@@ -17,7 +17,7 @@
 #include "hires/geometry/angles.h"
 #include "reports/limits/load_drive.h"
 
-namespace hires::evaluation {
+namespace hires::reports {
 namespace {
 
 using geometry::Twist2;
@@ -296,4 +296,4 @@ std::optional<LimitsReport> FindLimits(const LimitsRequest& request,
   return LimitFinder(request, setup, crew).Find();
 }
 
-}  // namespace hires::evaluation
+}  // namespace hires::reports

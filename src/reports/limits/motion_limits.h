@@ -11,7 +11,7 @@
 
 // How fast, how suddenly and how sharply a robot may drive so that what stands on its tray stays
 // there. docs/notes_limits.md says how it is found and what it was compared with.
-namespace hires::evaluation {
+namespace hires::reports {
 
 /// What is looked for.
 struct LimitsRequest {
@@ -94,4 +94,4 @@ std::string LimitsText(const LimitsReport& report);
 std::string LimitsYaml(const LimitsReport& report);
 nlohmann::ordered_json ToJson(const LimitsReport& report);
 
-}  // namespace hires::evaluation
+}  // namespace hires::reports

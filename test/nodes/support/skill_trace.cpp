@@ -115,9 +115,9 @@ int main(int argc, char** argv) {
     const bool is_scenario = where.find(".yaml") != std::string::npos;
     (is_scenario ? params.scenario : params.area) = where;
     const auto setup = hires::imagination::LoadImaginationSetup(params.setup);
-    const auto start = hires::evaluation::StartOf(setup, params.scenario, params.area);
+    const auto start = hires::sim_robot::StartOf(setup, params.scenario, params.area);
     RobotSimulator simulator(setup.scene, {}, start.world, start.robot, hires::base::Rng(1),
-                             setup.physics, hires::evaluation::LevelFor(*setup.scene));
+                             setup.physics, hires::sim_robot::LevelFor(*setup.scene));
     if (simulator.level() == hires::simulation::LevelOfDetail::kPlanar) {
       Remember(start.world, &simulator);
     }

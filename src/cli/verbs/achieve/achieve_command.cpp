@@ -35,7 +35,7 @@ int TerminalWidth() {
 /// Before the robot sets out.
 void RequireFolders(const AchieveOptions& options) {
   for (const std::string& path : {options.timeline, options.record, options.store}) {
-    if (!path.empty()) evaluation::RequireFolderOf(path);
+    if (!path.empty()) reports::RequireFolderOf(path);
   }
   CheckReport(options.report);
 }
@@ -51,7 +51,7 @@ void RequireRecorder(const AchieveOptions& options, const loop::RecordLoop& reco
 }
 
 std::string ScenarioPath(const AchieveOptions& options, const std::string& package_folder) {
-  return evaluation::ScenarioPath(options.scenario, package_folder + "/config/scenarios");
+  return sim_robot::ScenarioPath(options.scenario, package_folder + "/config/scenarios");
 }
 
 std::string LoopPath(const AchieveOptions& options, const std::string& package_folder) {
@@ -71,7 +71,7 @@ ReportOrigin OriginOf(const AchieveOptions& options, const std::string& package_
                    {"objects", options.files.objects},
                    {"domain", options.files.domain},
                    {"operators", options.files.operators}};
-  origin.hashes = {{"files", evaluation::ConfigurationHash(package_folder)}};
+  origin.hashes = {{"files", reports::ConfigurationHash(package_folder)}};
   return origin;
 }
 
@@ -92,10 +92,9 @@ nlohmann::ordered_json EndOf(const loop::LoopRun& run) {
 
 /// @param local  what was played here, if it was.
 void WriteFiles(const AchieveOptions& options, const ReportOrigin& origin,
-                const evaluation::AchieveReport& report,
-                const std::optional<loop::LoopRun>& local) {
+                const loop::AchieveReport& report, const std::optional<loop::LoopRun>& local) {
   if (!options.timeline.empty()) {
-    const std::string csv = evaluation::TimelineCsv(evaluation::MakeTimeline(report));
+    const std::string csv = reports::TimelineCsv(reports::MakeTimeline(report));
     base::ReplaceTextFile(options.timeline, csv);
   }
   nlohmann::ordered_json json = ToJson(report);
@@ -111,12 +110,12 @@ std::string Plural(std::size_t count, const std::string& what) {
   return fmt::format("{} {}{}", count, what, count == 1 ? "" : "s");
 }
 
-void PrintReport(const evaluation::AchieveReport& report, bool is_virtual) {
-  const evaluation::Timeline timeline = evaluation::MakeTimeline(report);
-  if (!timeline.bars.empty()) std::cout << '\n' << evaluation::TimelineText(timeline);
-  const std::string table = evaluation::ImaginationTable(report, is_virtual);
+void PrintReport(const loop::AchieveReport& report, bool is_virtual) {
+  const reports::Timeline timeline = reports::MakeTimeline(report);
+  if (!timeline.bars.empty()) std::cout << '\n' << reports::TimelineText(timeline);
+  const std::string table = reports::ImaginationTable(report, is_virtual);
   if (!table.empty()) std::cout << '\n' << table;
-  if (report.outcome == evaluation::AchieveOutcome::kDryRun)
+  if (report.outcome == loop::AchieveOutcome::kDryRun)
     std::cout << '\n' << DryRunTable(report.status);
   const std::size_t num_imaginations = report.status.imaginations.size();
   std::cout << fmt::format("\n{}: {}{}\n", report.task, ToString(report.outcome),
@@ -129,7 +128,7 @@ void PrintReport(const evaluation::AchieveReport& report, bool is_virtual) {
 }
 
 loop::LoopRun AchieveLocally(const AchieveOptions& options, const std::string& package_folder,
-                             const evaluation::OnAchieveStatus& on_status,
+                             const loop::OnAchieveStatus& on_status,
                              const std::function<bool()>& cancelled,
                              loop::LoopRecording* recording) {
   const loop::LoopSetup setup(LoopPath(options, package_folder), options.files);
@@ -159,19 +158,19 @@ void PrintTruth(const loop::LoopRun& run, double wall_seconds) {
   std::cout << fmt::format(
       "in truth ({}): fallen: {}; the robot touched: {}\n"
       "{:.1f} s of virtual time in {:.1f} s: {:.1f} times real time\n",
-      evaluation::TruthNote(run.truth_name), fallen.empty() ? "nothing" : base::Join(fallen, ", "),
+      sim_robot::TruthNote(run.truth_name), fallen.empty() ? "nothing" : base::Join(fallen, ", "),
       run.truth.contact.empty() ? "nothing" : run.truth.contact, run.virtual_seconds, wall_seconds,
       run.virtual_seconds / wall_seconds);
 }
 
-int ExitCodeFor(evaluation::AchieveOutcome outcome) {
+int ExitCodeFor(loop::AchieveOutcome outcome) {
   switch (outcome) {
-    case evaluation::AchieveOutcome::kSucceeded:
-    case evaluation::AchieveOutcome::kDryRun:
+    case loop::AchieveOutcome::kSucceeded:
+    case loop::AchieveOutcome::kDryRun:
       return kExitAchieved;
-    case evaluation::AchieveOutcome::kNoPlan:
+    case loop::AchieveOutcome::kNoPlan:
       return kExitNoWay;
-    case evaluation::AchieveOutcome::kPreempted:
+    case loop::AchieveOutcome::kPreempted:
       return kExitPreempted;
     default:
       return kExitNotAchieved;
@@ -265,8 +264,8 @@ void AddAchieveVerb(CLI::App* app, AchieveOptions* options) {
 }
 
 int RunAchieveVerb(const AchieveOptions& options, const std::string& package_folder,
-                   const evaluation::AchieveRemotely& achieve,
-                   const std::function<bool()>& cancelled, const loop::RecordLoop& record) {
+                   const loop::AchieveRemotely& achieve, const std::function<bool()>& cancelled,
+                   const loop::RecordLoop& record) {
   RequireRecorder(options, record);
   if (!options.files.domain.empty() && !options.is_local) {
     throw base::ConfigError(
@@ -283,7 +282,7 @@ int RunAchieveVerb(const AchieveOptions& options, const std::string& package_fol
   }
   RequireFolders(options);
   AchieveDisplay display(TerminalWidth());
-  const auto show = [&](const evaluation::AchieveStatus& status) {
+  const auto show = [&](const loop::AchieveStatus& status) {
     std::cout << display.Show(status) << std::flush;
   };
   const ReportOrigin origin = OriginOf(options, package_folder);
@@ -294,7 +293,7 @@ int RunAchieveVerb(const AchieveOptions& options, const std::string& package_fol
   if (options.is_local) {
     local = AchieveLocally(options, package_folder, show, cancelled, recording.get());
   }
-  const evaluation::AchieveReport report =
+  const loop::AchieveReport report =
       local ? local->report
             : achieve({base::Join(options.task, " "), options.imagination, options.wait}, show,
                       cancelled);

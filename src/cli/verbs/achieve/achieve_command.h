@@ -51,7 +51,7 @@ void AddAchieveVerb(CLI::App* app, AchieveOptions* options);
 /// @param record   Empty: this program cannot write bags.
 /// @return AchieveExitCode.  @throws base::ConfigError for bad input.
 int RunAchieveVerb(const AchieveOptions& options, const std::string& package_folder,
-                   const evaluation::AchieveRemotely& achieve,
-                   const std::function<bool()>& cancelled, const loop::RecordLoop& record = {});
+                   const loop::AchieveRemotely& achieve, const std::function<bool()>& cancelled,
+                   const loop::RecordLoop& record = {});
 
 }  // namespace hires::cli

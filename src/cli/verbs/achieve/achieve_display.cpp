@@ -38,7 +38,7 @@ bool IsToBegin(const StepStatus& step) {
   return step.phase == StepPhase::kWaiting || step.phase == StepPhase::kReady;
 }
 
-const StepStatus* Find(const evaluation::AchieveStatus& status, const StepStatus& step) {
+const StepStatus* Find(const loop::AchieveStatus& status, const StepStatus& step) {
   for (const StepStatus& other : status.steps) {
     if (other.plan == step.plan && other.index == step.index) return &other;
   }
@@ -51,13 +51,13 @@ std::string StepLine(const StepStatus& step, double now, double begin) {
   double time = now;
   if (step.started && step.phase == StepPhase::kRunning) time = *step.started;
   if (step.finished) time = *step.finished;
-  return fmt::format("{:8.1f} s  {:<8}  {}{}", time - begin, evaluation::ToString(step.phase),
+  return fmt::format("{:8.1f} s  {:<8}  {}{}", time - begin, loop::ToString(step.phase),
                      ToString(step.action), NoteOf(step));
 }
 
-std::string ImaginedLine(const evaluation::ImaginedStep& step, double now, double begin) {
+std::string ImaginedLine(const loop::ImaginedStep& step, double now, double begin) {
   const std::string what = ToString(step.action);
-  if (step.outcome == evaluation::ImaginedOutcome::kRunning) {
+  if (step.outcome == loop::ImaginedOutcome::kRunning) {
     return fmt::format("{:8.1f} s  imagines  {}", step.requested - begin, what);
   }
   return fmt::format("{:8.1f} s  imagined  {}: {}{}", step.answered.value_or(now) - begin, what,
@@ -70,8 +70,8 @@ std::vector<std::string> Lines(const std::string& text) {
   return lines;
 }
 
-std::vector<std::string> NewWarnings(const evaluation::AchieveStatus& before,
-                                     const evaluation::AchieveStatus& after, double begin) {
+std::vector<std::string> NewWarnings(const loop::AchieveStatus& before,
+                                     const loop::AchieveStatus& after, double begin) {
   std::vector<std::string> lines;
   for (std::size_t i = before.warnings.size(); i < after.warnings.size(); ++i) {
     lines.push_back(fmt::format("{:8.1f} s  warning   {}", after.now - begin, after.warnings[i]));
@@ -81,19 +81,19 @@ std::vector<std::string> NewWarnings(const evaluation::AchieveStatus& before,
 
 }  // namespace
 
-std::string StepTable(const evaluation::AchieveStatus& status, double begin) {
+std::string StepTable(const loop::AchieveStatus& status, double begin) {
   std::vector<std::vector<std::string>> rows{
       {"plan", "#", "state", "since", "end", "step", "note"}};
   for (const StepStatus& step : status.steps) {
     if (!IsNews(step)) continue;
     rows.push_back({std::to_string(step.plan + 1), std::to_string(step.index + 1),
-                    evaluation::ToString(step.phase), Since(step, begin), ExpectedEnd(step, begin),
+                    loop::ToString(step.phase), Since(step, begin), ExpectedEnd(step, begin),
                     ToString(step.action), step.note});
   }
-  return evaluation::FormatTable(rows);
+  return reports::FormatTable(rows);
 }
 
-std::string DryRunTable(const evaluation::AchieveStatus& status) {
+std::string DryRunTable(const loop::AchieveStatus& status) {
   int last_plan = 0;
   for (const StepStatus& step : status.steps) last_plan = std::max(last_plan, step.plan);
   std::optional<double> begin;
@@ -105,14 +105,14 @@ std::string DryRunTable(const evaluation::AchieveStatus& status) {
                     Seconds(step.expected_start - *begin), Seconds(step.expected_finish - *begin),
                     step.note});
   }
-  return evaluation::FormatTable(rows);
+  return reports::FormatTable(rows);
 }
 
-std::vector<std::string> ChangeLines(const evaluation::AchieveStatus& before,
-                                     const evaluation::AchieveStatus& after, double begin) {
+std::vector<std::string> ChangeLines(const loop::AchieveStatus& before,
+                                     const loop::AchieveStatus& after, double begin) {
   std::vector<std::string> lines = NewWarnings(before, after, begin);
   for (std::size_t i = 0; i < after.imaginations.size(); ++i) {
-    const evaluation::ImaginedStep& step = after.imaginations[i];
+    const loop::ImaginedStep& step = after.imaginations[i];
     if (i < before.imaginations.size() && before.imaginations[i].outcome == step.outcome) continue;
     lines.push_back(ImaginedLine(step, after.now, begin));
   }
@@ -128,8 +128,8 @@ std::vector<std::string> ChangeLines(const evaluation::AchieveStatus& before,
   return lines;
 }
 
-std::string AchieveDisplay::Show(const evaluation::AchieveStatus& status) {
-  if (!begin_) begin_ = evaluation::BeginOf(status);
+std::string AchieveDisplay::Show(const loop::AchieveStatus& status) {
+  if (!begin_) begin_ = loop::BeginOf(status);
   std::string text;
   if (width_ > 0) {
     text = Redraw(status);
@@ -141,7 +141,7 @@ std::string AchieveDisplay::Show(const evaluation::AchieveStatus& status) {
 }
 
 /// Warnings stay above, the table is drawn over the last one.
-std::string AchieveDisplay::Redraw(const evaluation::AchieveStatus& status) {
+std::string AchieveDisplay::Redraw(const loop::AchieveStatus& status) {
   std::string text = lines_drawn_ > 0 ? fmt::format("\033[{}A\r", lines_drawn_) : "";
   for (const std::string& line : NewWarnings(shown_, status, *begin_)) {
     text += line + kClearLine + "\n";

@@ -121,7 +121,7 @@ void Emit(const nlohmann::ordered_json& json, const std::string& table, const st
     return;
   }
   std::cout << table;
-  if (!path.empty()) evaluation::WriteJson(json, path);
+  if (!path.empty()) reports::WriteJson(json, path);
 }
 
 int RunLoad(const BlackboardOptions& options, BlackboardAccess* blackboard) {

@@ -106,7 +106,7 @@ knowledge::Filler ParseFiller(const std::string& text) {
 std::string LoadText(const knowledge::LoadSummary& summary) {
   std::vector<std::vector<std::string>> rows{{"class", "fluents"}};
   for (const auto& [name, count] : summary.concepts) rows.push_back({name, std::to_string(count)});
-  std::string text = summary.concepts.empty() ? "" : evaluation::FormatTable(rows) + "\n";
+  std::string text = summary.concepts.empty() ? "" : reports::FormatTable(rows) + "\n";
   text += fmt::format("{} of {} {} added", Counted(Total(summary), "fluent"),
                       summary.concepts.size(), summary.concepts.size() == 1 ? "class" : "classes");
   if (summary.known > 0) text += fmt::format(", {} known already", summary.known);
@@ -123,7 +123,7 @@ std::string FluentsText(const std::vector<knowledge::Fluent>& fluents) {
     rows.push_back({fluent.concept_name, fluent.instance, BoundsText(fluent.start),
                     BoundsText(fluent.finish), PropertiesText(fluent)});
   }
-  return (fluents.empty() ? "" : evaluation::FormatTable(rows) + "\n") +
+  return (fluents.empty() ? "" : reports::FormatTable(rows) + "\n") +
          Counted(fluents.size(), "fluent") + "\n";
 }
 
@@ -137,18 +137,18 @@ std::string EpisodesText(const std::vector<knowledge::Episode>& episodes) {
                     std::isinf(episode.finish) ? "runs" : fmt::format("{}", episode.finish),
                     episode.outcome, episode.task});
   }
-  return (episodes.empty() ? "" : evaluation::FormatTable(rows) + "\n") +
+  return (episodes.empty() ? "" : reports::FormatTable(rows) + "\n") +
          Counted(episodes.size(), "episode") + "\n";
 }
 
 std::string StatisticsText(const knowledge::Store::Statistics& s, const std::string& path) {
-  return evaluation::FormatTable({{"store", path},
-                                  {"fluents", std::to_string(s.fluents)},
-                                  {"instances", std::to_string(s.instances)},
-                                  {"changes", std::to_string(s.changes)},
-                                  {"episodes", std::to_string(s.episodes)},
-                                  {"bytes", std::to_string(s.bytes)},
-                                  {"schema", std::to_string(s.schema)}});
+  return reports::FormatTable({{"store", path},
+                               {"fluents", std::to_string(s.fluents)},
+                               {"instances", std::to_string(s.instances)},
+                               {"changes", std::to_string(s.changes)},
+                               {"episodes", std::to_string(s.episodes)},
+                               {"bytes", std::to_string(s.bytes)},
+                               {"schema", std::to_string(s.schema)}});
 }
 
 ordered_json ToJson(const knowledge::LoadSummary& summary) {

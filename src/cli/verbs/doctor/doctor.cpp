@@ -84,7 +84,7 @@ void CheckPhysics(Findings* findings) {
       rows.push_back(RowOf(check));
       checks.push_back(ToJson(check));
     }
-    std::cout << '\n' << evaluation::FormatTable(rows) << std::flush;
+    std::cout << '\n' << reports::FormatTable(rows) << std::flush;
     findings->physics.push_back({{"body", mill.name}, {"checks", checks}});
   }
 }

@@ -39,7 +39,7 @@ std::string MessageTable(const RobotNeeds& needs, const RobotView& view) {
       rows.push_back(RowOf(wanted.name, node, seen));
     }
   }
-  return rows.size() > 1 ? evaluation::FormatTable(rows) + '\n' : "";
+  return rows.size() > 1 ? reports::FormatTable(rows) + '\n' : "";
 }
 
 std::string ClockTable(const RobotView& view) {
@@ -49,7 +49,7 @@ std::string ClockTable(const RobotView& view) {
                     fmt::format("{:.3f}", 0.5 * bounds.width()),
                     std::to_string(bounds.num_answers)});
   }
-  return rows.size() > 1 ? evaluation::FormatTable(rows) + '\n' : "";
+  return rows.size() > 1 ? reports::FormatTable(rows) + '\n' : "";
 }
 
 std::string LastLine(const RobotFindings& findings) {

@@ -140,10 +140,10 @@ class ProgressDisplay {
   void Show(const imagination::Interim& interim) {
     const auto now = std::chrono::steady_clock::now();
     if (is_terminal_) {
-      std::cerr << '\r' << evaluation::ProgressLine(interim.progress) << "\033[K" << std::flush;
+      std::cerr << '\r' << reports::ProgressLine(interim.progress) << "\033[K" << std::flush;
     } else if (now >= next_line_) {
       next_line_ = now + std::chrono::seconds(5);
-      std::cerr << evaluation::ProgressLine(interim.progress) << std::endl;
+      std::cerr << reports::ProgressLine(interim.progress) << std::endl;
     }
   }
   void Clear() const {
@@ -172,9 +172,9 @@ void PrintBlockedGoals(const std::vector<imagination::Prediction>& ranking) {
 void PrintReport(const imagination::Report& report, imagination::RankingRule rule) {
   if (!report.ranking.empty()) {
     const bool with_cost = rule == imagination::RankingRule::kCost;
-    std::cout << evaluation::RankingTable(report.ranking, report.recommended, with_cost) << '\n';
+    std::cout << reports::RankingTable(report.ranking, report.recommended, with_cost) << '\n';
   }
-  std::cout << fmt::format("{}: {}\n", evaluation::OutcomeName(report), report.why);
+  std::cout << fmt::format("{}: {}\n", reports::OutcomeName(report), report.why);
   PrintBlockedGoals(report.ranking);
   for (const std::string& caveat : report.caveats) std::cout << "caveat: " << caveat << '\n';
   if (report.kept.rollouts > 0) {
@@ -237,7 +237,7 @@ ReportOrigin OriginOf(const ImagineOptions& options, const ImagineQuery& query, 
 nlohmann::ordered_json AnswerOf(const ImagineOptions& options, const ImagineQuery& query,
                                 QueryScene* scene, const imagination::Report& report,
                                 const std::function<bool()>& cancelled) {
-  nlohmann::ordered_json answer = evaluation::ToJson(report, query.scheduler.criteria);
+  nlohmann::ordered_json answer = reports::ToJson(report, query.scheduler.criteria);
   const std::string& html = options.report.html;
   if (html.empty() || report.ranking.empty()) return answer;
   const std::string& json = options.report.json;

@@ -69,16 +69,16 @@ std::optional<Replayed> Replay(const std::string& which, const imagination::Repo
 void WritePictures(const SaveRolloutOptions& options, const imagination::RolloutSetup& setup,
                    const RolloutRecording& recording, const RolloutRecording* beside, int threads) {
   if (options.gif.empty() && options.strip.empty()) return;
-  evaluation::FilmParams params;
+  reports::FilmParams params;
   params.threads = threads;
-  const evaluation::RolloutFilm film(setup, recording, params);
+  const reports::RolloutFilm film(setup, recording, params);
   if (beside != nullptr) {
-    evaluation::WriteGif(film, evaluation::RolloutFilm(setup, *beside, params), options.gif);
+    reports::WriteGif(film, reports::RolloutFilm(setup, *beside, params), options.gif);
   } else if (!options.gif.empty()) {
-    evaluation::WriteGif(film, options.gif);
+    reports::WriteGif(film, options.gif);
   }
   if (!options.strip.empty()) {
-    evaluation::WriteStrip(film, options.strip_pictures, options.strip);
+    reports::WriteStrip(film, options.strip_pictures, options.strip);
   }
 }
 
@@ -132,7 +132,7 @@ void CheckSaveRollout(const SaveRolloutOptions& options, const ImagineQuery& que
   if (!options.bag.empty() && !make_bag) {
     throw base::ConfigError("--bag: this build has no ROS to write bags with; use --csv FILE");
   }
-  for (const std::string& path : FilesOf(options)) evaluation::RequireFolderOf(path);
+  for (const std::string& path : FilesOf(options)) reports::RequireFolderOf(path);
 }
 
 void SaveRollout(const SaveRolloutOptions& options, int threads, QueryScene* scene,
@@ -160,7 +160,7 @@ std::vector<Strip> WriteStrips(const std::string& html, int threads, QueryScene*
                                const std::function<bool()>& cancelled) {
   const imagination::RolloutSetup& setup = scene->rollouts();
   const std::string stem = std::filesystem::path(html).replace_extension().string();
-  evaluation::FilmParams params;
+  reports::FilmParams params;
   params.threads = threads;
   std::vector<Strip> strips;
   for (const auto& [which, what] : {std::pair{"worst", "The worst of all"},
@@ -176,7 +176,7 @@ std::vector<Strip> WriteStrips(const std::string& html, int threads, QueryScene*
                     recording.events.empty() ? "" : "; last ",
                     recording.events.empty() ? "" : recording.events.back().text);
     strips.push_back({caption, fmt::format("{}_{}.png", stem, which)});
-    evaluation::WriteStrip({setup, recording, params}, kStripPictures, strips.back().file);
+    reports::WriteStrip({setup, recording, params}, kStripPictures, strips.back().file);
   }
   return strips;
 }

@@ -80,9 +80,9 @@ void AddLimitsVerb(CLI::App* app, LimitsOptions* options) {
 int RunLimitsVerb(const LimitsOptions& options, const std::string& package_folder,
                   const std::function<bool()>& cancelled) {
   for (const std::string& path : {options.json, options.yaml}) {
-    if (!path.empty()) evaluation::RequireFolderOf(path);
+    if (!path.empty()) reports::RequireFolderOf(path);
   }
-  evaluation::LimitsRequest request;
+  reports::LimitsRequest request;
   const imagination::ImaginationSetup setup =
       imagination::LoadImaginationSetup(SetupOf(options, package_folder, &request.object));
   request.is_controller_assumed =
@@ -91,21 +91,20 @@ int RunLimitsVerb(const LimitsOptions& options, const std::string& package_folde
   request.seed = options.seed;
   request.check_truths = options.check_truths;
   // Whoever asks reads these while the rest is played.
-  std::cout << evaluation::ClosedFormText(evaluation::ClosedFormLimits(request.object, setup))
-            << '\n'
+  std::cout << reports::ClosedFormText(reports::ClosedFormLimits(request.object, setup)) << '\n'
             << std::flush;
   const double begin = base::SteadyNow();
-  auto report = evaluation::FindLimits(request, setup, CrewOf(options, cancelled));
+  auto report = reports::FindLimits(request, setup, CrewOf(options, cancelled));
   if (!options.quiet && isatty(STDERR_FILENO) != 0) std::cerr << "\r\033[K";
   if (!report) {
     std::cerr << "hires limits: cancelled; nothing is written\n";
     return kExitCancelled;
   }
   report->wall_seconds = base::SteadyNow() - begin;
-  const std::string yaml = evaluation::LimitsYaml(*report);
-  std::cout << evaluation::LimitsText(*report) << '\n' << yaml;
+  const std::string yaml = reports::LimitsYaml(*report);
+  std::cout << reports::LimitsText(*report) << '\n' << yaml;
   if (!options.yaml.empty()) base::ReplaceTextFile(options.yaml, yaml);
-  if (!options.json.empty()) evaluation::WriteJson(evaluation::ToJson(*report), options.json);
+  if (!options.json.empty()) reports::WriteJson(reports::ToJson(*report), options.json);
   return kExitRecommended;
 }
 

@@ -238,7 +238,7 @@ Rows Worlds(const Sources& sources) {
 Rows Scenarios(const Sources& sources) {
   Rows rows;
   for (const fs::path& file : FilesIn(sources, "config/scenarios", ".yaml")) {
-    const evaluation::Scenario scenario = evaluation::ReadScenario(file);
+    const sim_robot::Scenario scenario = sim_robot::ReadScenario(file);
     rows.push_back({{"scenario", scenario.name},
                     {"task", scenario.task},
                     {"objects", scenario.objects.size()},
@@ -351,7 +351,7 @@ int RunListVerb(const ListOptions& options, const std::string& package_folder) {
   if (lister == Listers().end()) {
     throw base::ConfigError(base::UnknownName("list", options.what, Kinds()));
   }
-  if (!options.json.empty() && options.json != "-") evaluation::RequireFolderOf(options.json);
+  if (!options.json.empty() && options.json != "-") reports::RequireFolderOf(options.json);
   PrintList(options.what, lister->second(SourcesOf(options, package_folder)), options.json);
   return kExitRecommended;
 }

@@ -223,7 +223,7 @@ void AddLocaliseVerb(CLI::App* app, LocaliseOptions* o) {
 int RunLocaliseVerb(const LocaliseOptions& options, const std::string& package_folder,
                     const ReadDriveBag& read_bag) {
   for (const std::string& file : {options.trajectory, options.json})
-    if (!file.empty() && file != "-") evaluation::RequireFolderOf(file);
+    if (!file.empty() && file != "-") reports::RequireFolderOf(file);
   const auto config = localisation::ReadLocalisationConfig(base::ParamReader::FromFile(
       options.config.empty() ? package_folder + "/config/localisation.yaml" : options.config));
   const Answer answer = Localise(options, config.filter, package_folder, read_bag);
@@ -233,7 +233,7 @@ int RunLocaliseVerb(const LocaliseOptions& options, const std::string& package_f
     std::cout << ToJson(answer, options).dump(2) << '\n';
   } else {
     std::cout << Summary(answer, options);
-    if (!options.json.empty()) evaluation::WriteJson(ToJson(answer, options), options.json);
+    if (!options.json.empty()) reports::WriteJson(ToJson(answer, options), options.json);
   }
   return answer.is_localised() ? kExitRecommended : kExitUndecided;
 }

@@ -145,7 +145,7 @@ world::OccupancyGrid JudgesMap(const imagination::ImaginationSetup& setup,
   return simulation::MapIn(senses, setup.scene->world, *setup.scene->laser_height);
 }
 
-Judgement Judge(const evaluation::MapDrive& drive, const MapResult& result,
+Judgement Judge(const sim_robot::MapDrive& drive, const MapResult& result,
                 const world::OccupancyGrid& world, double max_range) {
   Judgement judgement;
   judgement.visited = drive.visited;
@@ -170,12 +170,12 @@ std::optional<std::pair<MapResult, Judgement>> DriveAndMap(const MapOptions& opt
   imagination::OverridePaths(options.world, options.robot, {}, "none", &files);
   files.localisation = "drawn";  // it is told, and exactly so: nothing is uncertain
   const imagination::ImaginationSetup setup = imagination::LoadImaginationSetup(files);
-  evaluation::MapDriveParams params;
+  sim_robot::MapDriveParams params;
   params.senses = simulation::LoadSelfLocalisation(files.self_localisation);
   params.motion_set = options.motion_set;
   params.seed = options.seed;
   const auto drive =
-      evaluation::DriveForMap(setup, params, "driving through " + files.world, cancelled);
+      sim_robot::DriveForMap(setup, params, "driving through " + files.world, cancelled);
   if (!drive) return std::nullopt;
   if (!options.log_output.empty()) localisation::WriteCarmenLog(drive->log, options.log_output);
   if (!options.truth_output.empty())
@@ -243,7 +243,7 @@ int RunMapVerb(const MapOptions& options, const std::string& package_folder,
   const std::string map = MapFile(options.output);
   for (const std::string& file :
        {map, options.trajectory, options.json, options.log_output, options.truth_output})
-    if (!file.empty() && file != "-") evaluation::RequireFolderOf(file);
+    if (!file.empty() && file != "-") reports::RequireFolderOf(file);
   MapResult result;
   std::optional<Judgement> judgement;
   if (options.is_driven) {
@@ -269,7 +269,7 @@ int RunMapVerb(const MapOptions& options, const std::string& package_folder,
     return kExitRecommended;
   }
   std::cout << Summary(result, map) << (judgement ? Summary(*judgement) : "");
-  if (!options.json.empty()) evaluation::WriteJson(json, options.json);
+  if (!options.json.empty()) reports::WriteJson(json, options.json);
   return kExitRecommended;
 }
 

@@ -151,7 +151,7 @@ std::string PlanTable(const planning::Plan& plan) {
                     fmt::format("{}", plan.steps[i].cost), waits_for[i],
                     Origin(plan, static_cast<int>(i))});
   }
-  return evaluation::FormatTable(rows);
+  return reports::FormatTable(rows);
 }
 
 void PrintTables(const std::vector<planning::Plan>& plans) {
@@ -176,7 +176,7 @@ void PrintTrace(const std::vector<planning::TraceEntry>& trace, std::ostream* ou
   for (const planning::TraceEntry& entry : trace) {
     rows.push_back({std::to_string(entry.depth), Shortened(entry.task), entry.where, entry.reason});
   }
-  *out << evaluation::FormatTable(rows) << '\n';
+  *out << reports::FormatTable(rows) << '\n';
 }
 
 void PrintViolations(const Session& session, std::ostream* out) {

@@ -126,7 +126,7 @@ std::string TableText(const Recognition& seen, const RecogniseOptions& options) 
   }
   if (options.is_segmenting)
     for (auto& row : rows) row.erase(row.begin() + 1);
-  return text + evaluation::FormatTable(rows);
+  return text + reports::FormatTable(rows);
 }
 
 void CheckOutputs(const RecogniseOptions& options) {
@@ -136,7 +136,7 @@ void CheckOutputs(const RecogniseOptions& options) {
   for (const auto& [option, path] :
        {std::pair("--json", options.json), std::pair("--labels", options.labels)}) {
     if (path.empty() || path == "-") continue;
-    evaluation::RequireFolderOf(path);
+    reports::RequireFolderOf(path);
     base::RequireReplaceable(path);
     base::RefuseOwnInput(option, path, "cloud", options.cloud);
   }
@@ -211,7 +211,7 @@ int RunRecogniseVerb(const RecogniseOptions& options, const std::string& package
               << TableText(seen, options);
   }
   if (!options.json.empty() && options.json != "-")
-    evaluation::WriteJson(ToJson(seen, options), options.json);
+    reports::WriteJson(ToJson(seen, options), options.json);
   if (!options.labels.empty())
     perception::WriteLabelledPcd(cloud, seen.segmentation.labels, options.labels);
   if (options.json != "-") SaySaved({options.json, options.labels});  // else it would be no JSON
