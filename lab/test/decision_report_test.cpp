@@ -80,7 +80,7 @@ TEST(DecisionReportTest, ComparisonsAreOfTheSameTasks) {
 }
 
 TEST(DecisionReportTest, JsonHasTheAgreedFields) {
-  const auto json = ToJson(Example(), "hires experiment decision");
+  const auto json = ToJson(Example(), "hires_lab experiment decision");
   for (const std::string& arm : AllArms()) {
     const auto& found = json["arms"][arm];
     for (const char* interval : {"cost", "regret"}) {

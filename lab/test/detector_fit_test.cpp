@@ -193,7 +193,7 @@ TEST(DetectorFitTest, AnyNumberOfThreadsFitsTheSameAndItsFileIsRead) {
 TEST(DetectorFitTest, TheShippedFitIsOfWhatIsShipped) {
   const std::string hash = FitHashOf(SmallOrder());
   EXPECT_THAT(base::ReadTextFile(kSource + "/config/detector.yaml", 1u << 20), HasSubstr(hash))
-      << "fit it anew: hires experiment detector --output config/detector.yaml";
+      << "fit it anew: hires_lab experiment detector --output config/detector.yaml";
 }
 
 TEST(DetectorFitTest, AnyChangeOfWhatAFitDependsOnIsSeenInItsHash) {

@@ -2,7 +2,7 @@
 
 #include <filesystem>
 
-#include "cli/command_run.h"
+#include "lab/test/lab_run.h"
 #include "hires/base/text.h"
 #include "cli/command_line.h"
 #include "hires/knowledge/experience.h"
@@ -12,7 +12,7 @@ namespace hires::lab::experiences_command_test {
 namespace {
 
 using hires::test_support::Ended;
-using hires::test_support::RunHires;
+using hires::test_support::RunLab;
 using knowledge::ExperienceStore;
 using testing::AllOf;
 using testing::HasSubstr;
@@ -35,7 +35,7 @@ class ExperiencesCommandTest : public ::testing::Test {
   }
 
   Ended Export(const std::vector<std::string>& selection) const {
-    return RunHires({"experiences", "export", store_, "--csv", csv_}, selection);
+    return RunLab({"experiences", "export", store_, "--csv", csv_}, selection);
   }
 
   /// What an export that is refused says.
@@ -98,7 +98,7 @@ TEST_F(ExperiencesCommandTest, TheStoreIsNotWrittenOver) {
        {std::vector<std::string>{"export", store_, "--csv", same},
         {"stats", store_, "--json", same},
         {"analyse", store_, "--json", store_}}) {
-    const Ended ended = RunHires({"experiences"}, words);
+    const Ended ended = RunLab({"experiences"}, words);
     EXPECT_EQ(ended.code, cli::kExitBadInput);
     EXPECT_THAT(ended.err, HasSubstr("would write over the store; name another file"));
     EXPECT_EQ(base::ReadTextFile(store_), before);
@@ -114,7 +114,7 @@ TEST_F(ExperiencesCommandTest, NumbersThatAreNoneAreRefused) {
 
 TEST_F(ExperiencesCommandTest, ASeedIsAWholeNumber) {
   for (const char* seed : {"-3", "2.5", "many"}) {
-    const Ended ended = RunHires({"experiences", "analyse", store_, "--seed", seed});
+    const Ended ended = RunLab({"experiences", "analyse", store_, "--seed", seed});
     EXPECT_EQ(ended.code, cli::kExitBadInput);
     EXPECT_THAT(ended.err, AllOf(HasSubstr("--seed"), HasSubstr("is no whole number")));
   }

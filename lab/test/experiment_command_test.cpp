@@ -9,7 +9,7 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
-#include "cli/command_run.h"
+#include "lab/test/lab_run.h"
 #include "hires/base/text.h"
 #include "cli/command_line.h"
 #include "hires/knowledge/experience.h"
@@ -18,19 +18,19 @@
 namespace hires::lab::experiment_command_test {
 namespace {
 
-using hires::test_support::RunHires;
+using hires::test_support::RunLab;
 using knowledge::ExperienceStore;
 
 const std::string kRoot = HIRES_SOURCE_DIR;
 
-/// The exit code of `hires experiment` with a file that expects `expectation` of three legs.
+/// The exit code of `hires_lab experiment` with a file that expects `expectation` of three legs.
 int cli::ExitCode(const std::string& expectation, const std::vector<std::string>& more = {}) {
   std::string yaml = base::ReadTextFile(kRoot + "/lab/config/experiments/legs_world.yaml");
   yaml = yaml.substr(0, yaml.find("expect:")) + "expect: [" + expectation + "]\n";
   yaml.replace(yaml.find("../scene.yaml"), 13, kRoot + "/config/scene.yaml");
   const std::string path = testing::TempDir() + "exit_code.yaml";
   std::ofstream(path) << yaml;
-  return RunHires({"experiment", path, "--runs", "1"}, more).code;
+  return RunLab({"experiment", path, "--runs", "1"}, more).code;
 }
 
 TEST(ExperimentCommandTest, ExitsByWhatTheFileExpects) {
@@ -43,7 +43,7 @@ TEST(ExperimentCommandTest, ExitsByWhatTheFileExpects) {
 
 TEST(ExperimentCommandTest, SeedsOfAllVerbsAreWholeNumbers) {
   for (const char* verb : {"localisation", "torso_poses", "detector", "recognition"}) {
-    const auto ended = RunHires({"experiment", verb, "--seed", "-1"});
+    const auto ended = RunLab({"experiment", verb, "--seed", "-1"});
     EXPECT_EQ(ended.code, 1) << verb;
     EXPECT_THAT(ended.err,
                 testing::AllOf(testing::HasSubstr("--seed"), testing::HasSubstr("no whole number")))
@@ -54,7 +54,7 @@ TEST(ExperimentCommandTest, SeedsOfAllVerbsAreWholeNumbers) {
 TEST(ExperimentCommandTest, CloudsAreWrittenToAFolderAlone) {
   const hires::test_support::TemporaryFolder folder;
   const std::string file = folder.Write("clouds.txt", "");
-  const auto ended = RunHires({"experiment", "recognition", "--tables", "1", "--clouds", file});
+  const auto ended = RunLab({"experiment", "recognition", "--tables", "1", "--clouds", file});
   EXPECT_EQ(ended.code, 1);
   EXPECT_THAT(ended.err, testing::HasSubstr("--clouds: '" + file + "' is a file; wanted a folder"));
 }
@@ -62,14 +62,14 @@ TEST(ExperimentCommandTest, CloudsAreWrittenToAFolderAlone) {
 TEST(ExperimentCommandTest, ASingleTableDecidesNoGoalAndThatIsSaid) {
   const hires::test_support::TemporaryFolder folder;
   const std::string json = (folder.path() / "numbers.json").string();
-  const auto ended = RunHires({"experiment", "recognition", "--tables", "1", "--quiet", "--clouds",
+  const auto ended = RunLab({"experiment", "recognition", "--tables", "1", "--quiet", "--clouds",
                                folder.path().string(), "--json", json});
   EXPECT_EQ(ended.code, 2) << ended.err;
   EXPECT_TRUE(std::filesystem::exists(folder.path() / "table_2000.pcd"));
   EXPECT_THAT(ended.out, testing::HasSubstr("saved to " + json +
                                             "\nexit code 2, as not all goals are met:\n"));
   EXPECT_THAT(ended.out, testing::HasSubstr("undecided, as the 95 % interval holds the goal: "));
-  const auto help = RunHires({"experiment", "recognition", "--help"});
+  const auto help = RunLab({"experiment", "recognition", "--help"});
   EXPECT_THAT(help.out, testing::HasSubstr("2 one is missed, undecided or without a value"));
 }
 
@@ -125,7 +125,7 @@ class ExperiencesOfALoopTest : public ::testing::Test {
 };
 
 TEST_F(ExperiencesOfALoopTest, ReplaceTheFileWhenAllIsPlayed) {
-  const auto ended = RunHires(words_);
+  const auto ended = RunLab(words_);
   EXPECT_EQ(ended.code, cli::kExitRecommended) << ended.err;
   EXPECT_THAT(Runs(), testing::ElementsAre("fast/0", "fast/1", "slow/0", "slow/1"));
   EXPECT_FALSE(std::filesystem::exists(store_ + ".unfinished"));
@@ -145,17 +145,17 @@ TEST_F(ExperiencesOfALoopTest, LeaveTheFileWhenThePlayIsInterrupted) {
 }
 
 TEST(ExperimentCommandTest, AFileOfThePackageIsFoundByItsName) {
-  const auto ended = RunHires({"experiment", "legs_world", "--hashes"});
+  const auto ended = RunLab({"experiment", "legs_world", "--hashes"});
   EXPECT_EQ(ended.code, 0) << ended.err;
   EXPECT_EQ(
       ended.out,
-      RunHires({"experiment", kRoot + "/lab/config/experiments/legs_world.yaml", "--hashes"}).out);
-  EXPECT_THAT(RunHires({"experiment", "paird"}).err,
+      RunLab({"experiment", kRoot + "/lab/config/experiments/legs_world.yaml", "--hashes"}).out);
+  EXPECT_THAT(RunLab({"experiment", "paird"}).err,
               testing::HasSubstr("lab/config/experiments: experiment 'paird' is unknown; did you mean "
                                  "'paired'?; or give a path"));
-  EXPECT_THAT(RunHires({"experiment", "none.yaml"}).err,
+  EXPECT_THAT(RunLab({"experiment", "none.yaml"}).err,
               testing::HasSubstr("none.yaml: no such file"));
-  EXPECT_THAT(RunHires({"experiment"}).err,
+  EXPECT_THAT(RunLab({"experiment"}).err,
               testing::HasSubstr("lab/config/experiments, such as paired"));
 }
 

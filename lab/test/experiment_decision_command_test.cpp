@@ -2,7 +2,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "cli/command_run.h"
+#include "lab/test/lab_run.h"
 #include "hires/base/text.h"
 #include "cli/command_line.h"
 #include "support/temporary_folder.h"
@@ -11,7 +11,7 @@ namespace hires::lab::experiment_decision_command_test {
 namespace {
 
 using hires::test_support::Ended;
-using hires::test_support::RunHires;
+using hires::test_support::RunLab;
 using testing::HasSubstr;
 using testing::SizeIs;
 
@@ -19,7 +19,7 @@ class DecisionCommandTest : public ::testing::Test {
  protected:
   std::string File(const std::string& name) const { return (folder_.path() / name).string(); }
   static Ended Decide(const std::vector<std::string>& words) {
-    return RunHires({"experiment", "decision"}, words);
+    return RunLab({"experiment", "decision"}, words);
   }
   /// Arms that need no rollout, so that it is short.
   nlohmann::json Constants(const std::string& runs, const std::string& threads,

@@ -5,7 +5,7 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
-#include "cli/command_run.h"
+#include "lab/test/lab_run.h"
 #include "lab/test/hypothesis_examples.h"
 #include "hires/base/text.h"
 #include "cli/command_line.h"
@@ -15,7 +15,7 @@ namespace hires::lab::experiment_hypothesis_command_test {
 namespace {
 
 using hires::test_support::Ended;
-using hires::test_support::RunHires;
+using hires::test_support::RunLab;
 using test_support::TemporaryFolder;
 using ::testing::HasSubstr;
 using ::testing::SizeIs;
@@ -24,10 +24,10 @@ const std::string kRoot = HIRES_SOURCE_DIR;
 
 Ended RunWith(const std::vector<std::string>& words, const PlayHypothesis& play = {},
               const std::string& package_folder = kRoot) {
-  cli::Backends backends;
+  LabBackends backends;
   backends.package_folder = package_folder;
   backends.play_hypothesis = play;
-  return RunHires({"experiment", "hypothesis"}, words, backends);
+  return RunLab({"experiment", "hypothesis"}, words, backends);
 }
 
 /// Succeeds with imagination, and without in odd runs; remembers what it was asked.
@@ -37,7 +37,7 @@ class FakePlayer {
     if (static_cast<int>(orders.size()) == stop_after) return std::nullopt;
     orders.push_back(order);
     HypothesisRun run =
-        evaluation::RecordOf(0, false, order.imagines || order.run % 2 == 1);
+        RecordOf(0, false, order.imagines || order.run % 2 == 1);
     if (order.run == dies_in) {
       run = {};
       run.outcome = "system_died";
@@ -86,7 +86,7 @@ TEST_F(HypothesisCommandTest, PlaysEveryRunInBothArmsOnTheSameSeed) {
   EXPECT_EQ(Report()["with_imagination"]["successes"], 4);
   EXPECT_EQ(Report()["without_imagination"]["successes"], 2);
   EXPECT_EQ(Report()["paired_difference"]["mean"], 0.5);
-  EXPECT_THAT(Report()["command"], HasSubstr("hires experiment hypothesis --scenario topple"));
+  EXPECT_THAT(Report()["command"], HasSubstr("hires_lab experiment hypothesis --scenario topple"));
   EXPECT_THAT(base::Split(base::ReadTextFile(File("runs.csv")), '\n'), SizeIs(10));
   EXPECT_THAT(ended.out, HasSubstr("4 of 4"));
 }

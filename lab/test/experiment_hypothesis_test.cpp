@@ -315,7 +315,7 @@ TEST(HypothesisReportTest, DurationsOfRunsThatFailedStandApart) {
     runs.push_back(RecordOf(run, false, run != 2));
     runs.back().duration += run == 1 ? 4.0 : run == 2 ? -6.0 : 2.0;
   }
-  const auto json = ToJson(SumUpHypothesis(Setting(3), runs), "hires experiment hypothesis");
+  const auto json = ToJson(SumUpHypothesis(Setting(3), runs), "hires_lab experiment hypothesis");
   EXPECT_EQ(json["paired_duration"]["pairs"], 3);
   EXPECT_DOUBLE_EQ(json["paired_duration"]["mean"], 0.0);
   EXPECT_EQ(json["paired_duration_of_successes"]["pairs"], 2);
@@ -330,7 +330,7 @@ TEST(SumUpHypothesisTest, AMissingRunIsNoReport) {
 TEST(HypothesisReportTest, SaysTheSameToMachines) {
   const HypothesisReport report =
       SumUpHypothesis(Setting(1), {RecordOf(1, true, true), RecordOf(1, false, false)});
-  const auto json = ToJson(report, "hires experiment hypothesis");
+  const auto json = ToJson(report, "hires_lab experiment hypothesis");
   EXPECT_EQ(json["runs"], 1);
   EXPECT_EQ(json["pace"], 4.0);
   EXPECT_EQ(json["with_imagination"]["successes"], 1);

@@ -2,17 +2,17 @@
 
 #include <gmock/gmock.h>
 
-#include "cli/command_run.h"
+#include "lab/test/lab_run.h"
 
 namespace hires::lab::experiment_ladder_command_test {
 namespace {
 
 using hires::test_support::Ended;
-using hires::test_support::RunHires;
+using hires::test_support::RunLab;
 using testing::HasSubstr;
 
 Ended Ladder(const std::vector<std::string>& words) {
-  return RunHires({"experiment", "ladder"}, words);
+  return RunLab({"experiment", "ladder"}, words);
 }
 
 TEST(ExperimentLadderCommandTest, RefusesBadOptionsBeforeItMeasures) {

@@ -134,7 +134,7 @@ TEST(PoseErrorExperimentTest, TheShippedFileIsOfTheShippedWorldAndFilters) {
   const auto height = robot::LaserHeight(robot::LoadAnyRobot(scene.robot));
   EXPECT_EQ(simulation::ReadPoseError(scene.localisation_error).hash,
             simulation::PlaceHash(scene.self_localisation, world, height.value()))
-      << "run hires experiment localisation --output config/localisation_error.yaml";
+      << "run hires_lab experiment localisation --output config/localisation_error.yaml";
 }
 
 }  // namespace

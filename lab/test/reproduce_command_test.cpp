@@ -3,7 +3,7 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
-#include "cli/command_run.h"
+#include "lab/test/lab_run.h"
 #include "lab/src/reproduce/play_runner.h"
 #include "lab/src/reproduce/play_store.h"
 #include "hires/base/files/writer_lock.h"
@@ -11,7 +11,7 @@
 #include "support/messages.h"
 #include "support/temporary_folder.h"
 
-namespace hires::lab::reproduce_test {
+namespace hires::lab::reproduce_command_test {
 namespace {
 
 using ::testing::AllOf;
@@ -46,7 +46,7 @@ class ReproduceTest : public ::testing::Test {
       const std::function<bool()>& cancelled = [] { return false; }) const {
     PlaysOrder order;
     order.plays = std::move(plays);
-    order.program = "/bin/sh";
+    order.program = order.lab_program = "/bin/sh";
     order.package = Path("package");
     order.again = again;
     order.cancelled = cancelled;
@@ -153,7 +153,7 @@ TEST_F(ReproduceTest, OneAtATimeWritesAFolder) {
   const std::string results = folder_.path().string();
   const base::WriterLock lock(results + "/results", "wait");
   const auto run = [&](const std::vector<std::string>& words) {
-    return hires::test_support::RunHires({"reproduce"}, words);
+    return hires::test_support::RunLab({"reproduce"}, words);
   };
   const auto refused = run({"5.1", "--results", results, "--quiet"});
   EXPECT_EQ(refused.code, 1);
@@ -164,7 +164,7 @@ TEST_F(ReproduceTest, OneAtATimeWritesAFolder) {
 
 TEST_F(ReproduceTest, TheVerbListsPlaysAndJudges) {
   const auto run = [&](const std::vector<std::string>& words) {
-    return hires::test_support::RunHires({"reproduce"}, words);
+    return hires::test_support::RunLab({"reproduce"}, words);
   };
   const std::string results = Path("r");
   EXPECT_THAT(run({"5.1", "--list", "--results", results}).out,
@@ -173,7 +173,7 @@ TEST_F(ReproduceTest, TheVerbListsPlaysAndJudges) {
                                              "are still to be played\n$")));
   EXPECT_THAT(
       run({"9.9", "--results", results}).err,
-      HasSubstr("'9.9' is unknown; did you mean '5.9' or 'A.9'?; `hires reproduce --list`"));
+      HasSubstr("'9.9' is unknown; did you mean '5.9' or 'A.9'?; `hires_lab reproduce --list`"));
   const hires::test_support::Ended shown =
       run({"5.1", "--results", results, "--json", Path("r.json"), "--quiet"});
   EXPECT_EQ(shown.code, 0);
@@ -200,7 +200,7 @@ TEST_F(ReproduceTest, UndecidedChecksAreCountedApartFromUndecidedResults) {
   base::ReplaceTextFile(store.AnswerOf(play), R"({"x": 1, "y": 0})");
   store.Keep(play, 1.0);
   const std::string results = Path("results");
-  const hires::test_support::Ended ended = hires::test_support::RunHires(
+  const hires::test_support::Ended ended = hires::test_support::RunLab(
       {"reproduce"},
       {"--catalogue", path, "--results", results, "--json", Path("r.json"), "--quiet"});
   EXPECT_EQ(ended.code, 0) << ended.err;
@@ -214,7 +214,7 @@ TEST_F(ReproduceTest, UndecidedChecksAreCountedApartFromUndecidedResults) {
 
 TEST_F(ReproduceTest, AMinusIsNoFile) {
   for (const char* option : {"--html", "--json"}) {
-    const hires::test_support::Ended ended = hires::test_support::RunHires(
+    const hires::test_support::Ended ended = hires::test_support::RunLab(
         {"reproduce"}, {"5.1", "--results", Path("r"), "--quiet", option, "-"});
     EXPECT_EQ(ended.code, 1);
     EXPECT_THAT(ended.err, HasSubstr(std::string(option) + " -: is no file"));
@@ -224,4 +224,4 @@ TEST_F(ReproduceTest, AMinusIsNoFile) {
 }
 
 }  // namespace
-}  // namespace hires::lab::reproduce_test
+}  // namespace hires::lab::reproduce_command_test

@@ -1,4 +1,4 @@
-"""`hires reproduce` of what is played in a minute: each number of the shipped catalogue is found in what this
+"""`hires_lab reproduce` of what is played in a minute: each number of the shipped catalogue is found in what this
 version answers, each picture is drawn, and what holds by closed forms holds. Usage: reproduce_short_test.py HIRES"""
 
 import json

@@ -78,7 +78,7 @@ TEST_F(CatalogueTest, WhoAsksForWhatIsNotThereLearnsHowToListAll) {
     return hires::test_support::ConfigErrorOf([&] { NamesOf(catalogue, {wanted}); });
   };
   for (const char* wanted : {"9.9.9", "foo", "Figure 6.55"}) {
-    EXPECT_THAT(error(wanted), HasSubstr("`hires reproduce --list` lists")) << wanted;
+    EXPECT_THAT(error(wanted), HasSubstr("`hires_lab reproduce --list` lists")) << wanted;
   }
   EXPECT_THAT(error("Figure 6.55"), HasSubstr("did you mean 'Fig. 6.5'"));
 }

@@ -11,7 +11,7 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
-#include "cli/command_run.h"
+#include "lab/test/lab_run.h"
 #include "hires/base/process.h"
 #include "hires/base/text.h"
 #include "hires/knowledge/blackboard_config.h"
@@ -26,7 +26,7 @@ namespace fs = std::filesystem;
 using hires::test_support::Capture;
 using hires::test_support::ConfigErrorOf;
 using hires::test_support::Ended;
-using hires::test_support::RunHires;
+using hires::test_support::RunLab;
 using nlohmann::ordered_json;
 using ::testing::AllOf;
 using ::testing::HasSubstr;
@@ -61,7 +61,7 @@ class ScenariosTest : public ::testing::Test {
     options.store = (folder_.path() / "store").string();
     options.report.json = (folder_.path() / "all.json").string();
     options.report.package_folder = kRoot;
-    options.report.command = "hires scenarios some.yaml";
+    options.report.command = "hires_lab scenarios some.yaml";
     options.runs = 1;
     options.quiet = true;
     return options;
@@ -376,19 +376,19 @@ TEST(GraphOrderTest, ComesBackFromItsTextAndErrorsNameTheField) {
 }
 
 TEST(ScenariosVerbTest, WordsThatMakeNoSenseAreRefused) {
-  EXPECT_THAT(RunHires({"scenarios"}).err, HasSubstr("file is required"));
-  EXPECT_THAT(RunHires({"scenarios", "a.yaml", "--ideal", "--truth", "same"}).err,
+  EXPECT_THAT(RunLab({"scenarios"}).err, HasSubstr("file is required"));
+  EXPECT_THAT(RunLab({"scenarios", "a.yaml", "--ideal", "--truth", "same"}).err,
               AllOf(HasSubstr("--ideal"), HasSubstr("--truth")));
-  EXPECT_THAT(RunHires({"scenarios", "a.yaml", "--pace", "2"}).err, HasSubstr("--graph"));
-  EXPECT_THAT(RunHires({"scenarios", "missing.yaml"}).err, HasSubstr("missing.yaml"));
-  EXPECT_EQ(RunHires({"scenarios", "missing.yaml"}).code, kExitSeriesBadInput);
+  EXPECT_THAT(RunLab({"scenarios", "a.yaml", "--pace", "2"}).err, HasSubstr("--graph"));
+  EXPECT_THAT(RunLab({"scenarios", "missing.yaml"}).err, HasSubstr("missing.yaml"));
+  EXPECT_EQ(RunLab({"scenarios", "missing.yaml"}).code, kExitSeriesBadInput);
 }
 
 TEST(ScenariosVerbTest, AScenarioInPlaceOfASeriesIsToldHowItIsPlayed) {
-  EXPECT_THAT(RunHires({"scenarios", "topple"}).err,
+  EXPECT_THAT(RunLab({"scenarios", "topple"}).err,
               HasSubstr("series 'topple' is unknown; did you mean 'replace --scenario topple'?"));
-  EXPECT_THAT(RunHires({"scenarios", "coffee"}).err, HasSubstr("'replace --scenario hot_coffee'"));
-  EXPECT_THAT(RunHires({"scenarios", "replce"}).err, HasSubstr("did you mean 'replace'?"));
+  EXPECT_THAT(RunLab({"scenarios", "coffee"}).err, HasSubstr("'replace --scenario hot_coffee'"));
+  EXPECT_THAT(RunLab({"scenarios", "replce"}).err, HasSubstr("did you mean 'replace'?"));
 }
 
 }  // namespace

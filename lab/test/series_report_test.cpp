@@ -257,7 +257,7 @@ TEST(SeriesJournalTest, GoesOnWithOneThatDoesNotTellWhatWasKnown) {
   const std::string path = (folder.path() / "old.journal").string();
   ordered_json old = ToJson(RunOf(1, {0}, "succeeded"));
   ASSERT_EQ(old.erase("known_fluents"), 1u);
-  RunJournal(path, {{"journal", "hires scenarios 1"}, {"seed", 1}},
+  RunJournal(path, {{"journal", "hires_lab scenarios 1"}, {"seed", 1}},
              [](const ordered_json&, const std::string&) {})
       .Append(old);
   SeriesRun next = RunOf(2, {1}, "succeeded");

@@ -1,4 +1,4 @@
-"""The page of `hires reproduce`: what each table and figure of the dissertation came to, with pictures."""
+"""The page of `hires_lab reproduce`: what each table and figure of the dissertation came to, with pictures."""
 
 import math
 

@@ -233,7 +233,7 @@ std::shared_ptr<const simulation::Scene> WithPlace(std::shared_ptr<const simulat
   if (file.hash != hash) {
     throw base::ConfigError(fmt::format(
         "{}: fitted_to is {}, wanted {}: it is of another world, laser or filter than {} and the "
-        "scene have; write it anew with `hires experiment localisation`, or set localisation: "
+        "scene have; write it anew with `hires_lab experiment localisation`, or set localisation: "
         "drawn",
         config.localisation_error, file.hash, hash, config.self_localisation));
   }

@@ -35,7 +35,7 @@ TimelineBar BarOf(const execution::StepStatus& step, double begin, double end) {
   bar.plan = step.plan;
   bar.index = step.index;
   bar.action = ToString(step.action);
-  bar.outcome = ToString(step.phase);
+  bar.outcome = loop::ToString(step.phase);
   bar.begin = *step.started - begin;
   bar.end = step.finished.value_or(end) - begin;
   bar.note = step.note;

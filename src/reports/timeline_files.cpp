@@ -19,7 +19,7 @@ ordered_json StepToJson(const execution::StepStatus& step) {
           {"index", step.index},
           {"action", step.action.name},
           {"arguments", step.action.arguments},
-          {"phase", ToString(step.phase)},
+          {"phase", loop::ToString(step.phase)},
           {"started", NumberOrNull(step.started)},
           {"finished", NumberOrNull(step.finished)},
           {"earliest_start", NumberOrNull(step.start.earliest)},

@@ -234,19 +234,6 @@ TEST(CommandLineTest, TheVersionIsThatOfThePackage) {
               HasSubstr("<version>" + ended.out.substr(6, ended.out.size() - 7) + "</version>"));
 }
 
-TEST(CommandLineTest, VerbsThatProgramsCallAreNotShown) {
-  Backends backends;
-  bool is_run = false;
-  backends.more_verbs.push_back({"scenario_run", "one run", [&](const std::vector<std::string>&) {
-                                   is_run = true;
-                                   return 0;
-                                 }});
-  EXPECT_THAT(RunHires({"--help"}, {}, backends).out, Not(HasSubstr("scenario_run")));
-  EXPECT_THAT(RunHires({"scenario_rn"}, {}, backends).err, Not(HasSubstr("scenario_run")));
-  RunHires({"scenario_run", "x"}, {}, backends);
-  EXPECT_TRUE(is_run);
-}
-
 TEST(CommandLineTest, ADoctorForRobotsIsAskedWithItsOptions) {
   std::optional<RobotDoctorOptions> seen;
   Backends backends;
@@ -371,23 +358,24 @@ TEST(CommandLineTest, RefusesUnknownVerbsAndOptions) {
                 {"option '--rolouts' is unknown; did you mean '--rollouts'?"});
   ExpectRefused(Small().Imagine(kDrive + std::vector<std::string>{"--wrld", "a.world"}),
                 {"option '--wrld' is unknown; did you mean '--world'?"});
-  ExpectRefused(RunHires({"experiment", "decision", "--truht", "same"}), {"'--truth'"});
   ExpectRefused(RunHires({"imagine", "--action", "move_base"}), {"--from", "required"});
 }
 
 TEST(CommandLineTest, RefusesUnknownVerbsBelowVerbs) {
-  ExpectRefused(RunHires({"experiences", "analyze", "x.db"}),
-                {"verb 'analyze' is unknown; did you mean 'analyse'?"});
   for (const std::vector<std::string>& words : {std::vector<std::string>{"qery", "--store", "s"},
                                                 {"--store", "s", "qery"},
                                                 {"--store=s", "qery"}}) {
     ExpectRefused(RunHires({"blackboard"}, words),
                   {"verb 'qery' is unknown; did you mean 'query'?"});
   }
-  ExpectRefused(RunHires({"experiment", "hypothsis", "--scenario", "topple"}),
-                {"verb 'hypothsis' is unknown; did you mean 'hypothesis'?"});
-  ExpectRefused(RunHires({"experiment", "--quiet", "--seed", "3", "lader"}),
-                {"verb 'lader' is unknown; did you mean 'ladder'?"});
+}
+
+TEST(CommandLineTest, VerbsThatWentToTheLabSayWhereTheyAre) {
+  ExpectRefused(RunHires({"experiment", "legs_world"}),
+                {"'hires experiment'", "'hires_lab experiment'"});
+  for (const char* verb : {"experiences", "reproduce", "scenarios"}) {
+    ExpectRefused(RunHires({verb, "--quiet"}), {std::string("'hires_lab ") + verb + "'"});
+  }
 }
 
 TEST(CommandLineTest, RefusesNumbersOutOfRange) {

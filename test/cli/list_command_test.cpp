@@ -108,9 +108,6 @@ TEST(ListCommandTest, FilesOfThePackageAreFound) {
                           worlds + "workshop.world"));
   EXPECT_THAT(ColumnOf(Listed({"scenarios"}), "scenario"),
               ElementsAre("coffee_spots", "hot_coffee", "serve_coffee", "topple"));
-  const auto series = RowOf(Listed({"series"}), "series", "replace");
-  EXPECT_EQ(series["file"], HIRES_SOURCE_DIR "/lab/config/series/replace.yaml");
-  EXPECT_EQ(series["combinations"], 9) << "three arrangements, three starts";
   EXPECT_THAT(ColumnOf(Listed({"truths"}), "truth"),
               ElementsAre("filter", "foreign", "harsh", "ideal", "same"));
 }

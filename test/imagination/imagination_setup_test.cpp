@@ -238,7 +238,7 @@ TEST(SetupConfigTest, WhatTellsTheRobotItsPlaceIsReadAndMatters) {
   write("0123456789abcdef");
   EXPECT_THAT(file.WhyRefused(),
               AllOf(HasSubstr("error.yaml: fitted_to is 0123456789abcdef, wanted " + hash),
-                    HasSubstr("hires experiment localisation")));
+                    HasSubstr("hires_lab experiment localisation")));
   file.root["localisation"] = "amcl";
   EXPECT_THAT(file.WhyRefused(), HasSubstr("localisation is 'amcl'"));
 }

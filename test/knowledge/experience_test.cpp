@@ -251,7 +251,7 @@ TEST_F(ExperienceStoreTest, OtherFilesAreRefusedByName) {
     return ConfigErrorOf([&] { ExperienceStore(path, mode); });
   };
   EXPECT_THAT(open(Path("none.db"), ExperienceStore::Mode::kRead),
-              AllOf(HasSubstr("none.db: no such file; wanted experiences: `hires experiment "),
+              AllOf(HasSubstr("none.db: no such file; wanted experiences: `hires_lab experiment "),
                     HasSubstr("topple_loop.yaml --experiences FILE` makes them")));
   EXPECT_THAT(open(Path("x/none.db"), ExperienceStore::Mode::kWrite),
               HasSubstr("there is no folder"));

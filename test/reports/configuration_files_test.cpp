@@ -30,11 +30,6 @@
 #include "hires/simulation/pose_error.h"
 #include "hires/simulation/self_localisation.h"
 #include "hires/world/object_catalogue.h"
-#include "lab/src/decision/decision.h"
-#include "lab/src/experiment/experiment.h"
-#include "lab/src/experiment/hypothesis.h"
-#include "lab/src/reproduce/catalogue.h"
-#include "lab/src/series/scenario_series.h"
 #include "reports/episode/episode_topics.h"
 #include "reports/experience/load_follower.h"
 #include "sim_robot/scenario.h"
@@ -58,21 +53,6 @@ const std::map<std::string, Reader>& Readers() {
       {"imagination_client.yaml",
        [](const std::string& path) { imagination::ReadClientConfig(path); }},
       {"scene.yaml", [](const std::string& path) { imagination::ReadSetupConfig(path); }},
-      {"decision.yaml", [](const std::string& path) { lab::ReadDecisionConfig(path); }},
-      {"reproduce.yaml", [](const std::string& path) { lab::ReadCatalogue(path); }},
-      {"reproduce_docs.yaml", [](const std::string& path) { lab::ReadCatalogue(path); }},
-      {"series", [](const std::string& path) { lab::ReadScenarioSeries(path); }},
-      {"experiments",
-       [](const std::string& path) {
-         lab::ExperimentOverrides overrides;
-         overrides.map = "given.yaml";  // some want one; it is opened when it is played
-         lab::ReadExperiment(path, overrides);
-       }},
-      {"hypothesis.yaml",
-       [](const std::string& path) {
-         for (const char* scenario : {"topple", "serve_coffee"})
-           lab::ReadHypothesisGoal(path, scenario);
-       }},
       {"prices.yaml",
        [](const std::string& path) { imagination::ReadPrices(base::ParamReader::FromFile(path)); }},
       {"validated.yaml",

@@ -58,7 +58,7 @@ struct LengthRegression {
   double spread{0.0};  ///< sd of the logarithm
 };
 
-/// How a recogniser errs, as it was found by trying it (`hires experiment detector`).
+/// How a recogniser errs, as it was found by trying it (`hires_lab experiment detector`).
 struct DetectorErrors {
   Regression found;  ///< log odds
   Regression named;  ///< log odds that what is found is called rightly

@@ -12,8 +12,8 @@
 namespace hires::simulation {
 
 /// How the place errs at which a robot takes itself to be, as was found of one that finds it by
-/// itself (`hires experiment localisation`): a first-order autoregression from one correction by
-/// the laser to the next, and odometry that drifts between two. Errors are those of the believed
+/// itself (`hires_lab experiment localisation`): a first-order autoregression from one correction
+/// by the laser to the next, and odometry that drifts between two. Errors are those of the believed
 /// base in the true one: ahead [m], to the left [m], turned [rad].
 struct PoseErrorParams {
   double update_distance{0.2};  ///< [m] of the odometry or ...

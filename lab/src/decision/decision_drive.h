@@ -10,7 +10,7 @@
 
 namespace hires::lab {
 
-/// Plays one drive of `hires experiment decision`, as it is judged there.
+/// Plays one drive of `hires_lab experiment decision`, as it is judged there.
 /// @return nothing when cancelled.
 std::optional<TruthPlay> PlayDrive(const loop::LoopSetup& setup,
                                                const sim_robot::Truth& truth,

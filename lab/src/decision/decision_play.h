@@ -11,7 +11,7 @@
 #include "hires/imagination/imagination_setup.h"
 #include "hires/imagination/scheduler.h"
 
-// What a task of `hires experiment decision` is made of: imagined once for all truths, played once
+// What a task of `hires_lab experiment decision` is made of: imagined once for all truths, played once
 // with each motion set, and many times per load, route and height for the oracle.
 namespace hires::lab {
 

@@ -24,7 +24,7 @@ std::vector<std::string> LineOfMeans(const FoundDurations& found, std::size_t r)
     const TimedRuns& timed = found.At(p, r);
     reached += timed.durations.size();
     runs += timed.runs;
-    means.push_back(WithSigma(timed.mean(), Deviation(timed.durations)));
+    means.push_back(WithSigma(timed.mean(), reports::Deviation(timed.durations)));
   }
   std::vector<std::string> line{DurationName(row), DurationRoute(row),
                                 fmt::format("{} of {}", reached, runs)};
@@ -59,7 +59,7 @@ void AddMeans(const FoundDurations& found, Findings* findings) {
   for (std::size_t r = 0; r < rows.size(); ++r) {
     const TimedRuns& timed = found.At(0, r);
     const double sigma = timed.durations.empty() ? std::numeric_limits<double>::quiet_NaN()
-                                                 : Deviation(timed.durations);
+                                                 : reports::Deviation(timed.durations);
     findings->measures.push_back({"mean_" + KeyOf(rows[r]), timed.mean()});
     findings->measures.push_back({"sigma_" + KeyOf(rows[r]), sigma});
   }

@@ -9,7 +9,7 @@
 
 namespace hires::lab {
 
-/// Plays one run of `hires experiment hypothesis --local` in this process, in virtual time; runs of
+/// Plays one run of `hires_lab experiment hypothesis --local` in this process, in virtual time; runs of
 /// one setup may be played on several threads at once. Pace, workers and wall-clock limits of the
 /// order are not heeded: config/loop.yaml says how long imagining takes.
 /// @param truth  as LoopOrder::truth.

@@ -12,7 +12,7 @@ namespace hires::lab {
 /// FIRST_PORT`.
 constexpr char kHypothesisRunVerb[] = "hypothesis_run";
 
-/// Plays one run of `hires experiment hypothesis` in a process of its own, which starts the whole
+/// Plays one run of `hires_lab experiment hypothesis` in a process of its own, which starts the whole
 /// system (hypothesis_run.launch) under a new master on loopback, and ends it in whatever way the
 /// run ends. A run whose process dies or hangs is recorded as one that broke down. Call it from
 /// main().

@@ -89,7 +89,7 @@ class Watching {
 
  private:
   static StartState Start(const Places& places) {
-    StartState start = StartOf(places.drawn(), places.Scenario("serve_coffee"), "");
+    StartState start = sim_robot::StartOf(places.drawn(), places.Scenario("serve_coffee"), "");
     start.robot.X_MB = {7.73, 10.0, 1.5708};
     start.robot.joints["head_tilt_joint"] = 0.4;  // [rad]
     return start;
@@ -211,7 +211,7 @@ Way BareWay(const Places& places) {
   return {"the robot simulator of the same scenario alone, nothing commanded", {}, [&places] {
             constexpr long kRound = 1000;  // [ms]
             const auto world = std::make_shared<sim_robot::SimRobotWorld>(
-                places.drawn(), StartOf(places.drawn(), places.Scenario("topple"), ""),
+                places.drawn(), sim_robot::StartOf(places.drawn(), places.Scenario("topple"), ""),
                 places.seed());
             return Player{[world](int) {
               world->Advance(kRound);

@@ -78,7 +78,7 @@ std::string ToYaml(const PoseErrorReport& report) {
   }
   return fmt::format(
              "# How the place errs at which a robot takes itself to be that finds it by itself.\n"
-             "# Written by `hires experiment localisation`, not by hand.\n"
+             "# Written by `hires_lab experiment localisation`, not by hand.\n"
              "# {}.\n# {} series of other seeds, and the fit along the same ways:\n{}"
              "# Another world, laser, wheels or filters need another one: fitted_to tells.\n",
              SourceText(report), report.held_out, commented) +

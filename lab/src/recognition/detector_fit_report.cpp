@@ -122,7 +122,7 @@ std::string ToYaml(const DetectorFitReport& report) {
         reports::NumberText(1e3 * one.expected, 2));
   }
   return fmt::format(
-             "# How the head camera's recogniser errs. Written by `hires experiment detector`, not "
+             "# How the head camera's recogniser errs. Written by `hires_lab experiment detector`, not "
              "by hand.\n"
              "# {},\n# {}.\n"
              "# Models, robot, parameters, sensor: {}; another one means that it is out of date.\n"

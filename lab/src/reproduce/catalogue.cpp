@@ -309,7 +309,7 @@ std::vector<std::string> NamesOf(const Catalogue& catalogue, const std::string& 
   std::set<std::string> known{"all"};
   for (const CatalogueItem& item : catalogue.items) known.insert({item.section, item.name});
   const std::vector<std::string> names_known(known.begin(), known.end());
-  constexpr char kLister[] = "hires reproduce --list";
+  constexpr char kLister[] = "hires_lab reproduce --list";
   const bool has_guess = !base::LikelyNames(catalogued, names_known).empty();
   throw base::ConfigError(
       base::UnknownName("table, figure or section", catalogued, names_known, kLister) +
@@ -362,6 +362,12 @@ std::vector<Play> PlaysFor(const Catalogue& catalogue, const std::vector<Catalog
     if (is_shown) Append(catalogue, play, {}, &order);
   }
   return order;
+}
+
+std::string ProgramNameOf(const Play& play) {
+  static const std::set<std::string> kLabVerbs{"experiment", "experiences", "scenarios"};
+  const bool is_of_lab = !play.command.empty() && kLabVerbs.count(play.command.front()) > 0;
+  return is_of_lab ? "hires_lab" : "hires";
 }
 
 }  // namespace hires::lab

@@ -17,6 +17,8 @@ struct Play {
   double seconds{0.0};              ///< [s] wall time on two cores, to foretell how long it takes
   std::vector<int> done_codes;      ///< exit codes at which the answer is whole
 };
+/// "hires_lab" for the verbs of the lab, else "hires".
+std::string ProgramNameOf(const Play& play);
 
 /// How near a number of ours has to come to the published one.
 struct Acceptance {

@@ -33,6 +33,8 @@ std::string Replaced(std::string word, const std::string& what, const std::strin
   return word;
 }
 
+bool IsOfLab(const Play& play) { return ProgramNameOf(play) != "hires"; }
+
 class PlayRunner {
  public:
   PlayRunner(const PlaysOrder& order, PlayStore* store) : order_(order), store_(*store) {}
@@ -100,7 +102,7 @@ class PlayRunner {
   /// How it ended; nothing where it was interrupted.
   std::optional<std::string> RunChild(const Play& play, double begin) {
     base::ProcessOptions options;
-    options.command = {order_.program};
+    options.command = {IsOfLab(play) ? order_.lab_program : order_.program};
     for (const std::string& word : play.command) options.command.push_back(Filled(word, play));
     options.output = store_.LogOf(play);
     store_.MakeRoom(play);
@@ -152,7 +154,7 @@ class PlayRunner {
           stored.path + ": is no JSON; delete its folder, and it is played again";
       return;
     }
-    std::vector<std::string> words{"hires"};
+    std::vector<std::string> words{ProgramNameOf(play)};
     words.insert(words.end(), play.command.begin(), play.command.end());
     done_.answers[play.name] = {std::move(content), store_.KeyOf(play), stored.build,
                                 cli::CommandText(words), stored.seconds,     is_new};

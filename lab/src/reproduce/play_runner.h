@@ -33,7 +33,7 @@ struct PlaysProgress {
 
 struct PlaysOrder {
   std::vector<Play> plays;  ///< each after those whose answers it takes
-  std::string program;                  ///< that plays: `hires`
+  std::string program, lab_program;     ///< that play: `hires` and `hires_lab`
   std::string package;
   bool again{false};  ///< what is there is played once more
   std::function<bool()> cancelled;

@@ -12,6 +12,7 @@
 #include "hires/base/process.h"
 #include "hires/base/run_processes.h"
 #include "hires/base/text.h"
+#include "lab/src/product_program.h"
 
 namespace hires::lab {
 namespace {
@@ -103,9 +104,9 @@ TryEnd Await(base::ChildProcess* process, const ScenarioOrder& order, const Scen
 
 std::vector<std::string> CommandOf(const ScenarioOrder& order, const ScenarioPlayer& player,
                                    const std::optional<base::PortClaim>& ports) {
-  const bool is_this = player.program.empty();
-  std::vector<std::string> command{is_this ? fs::read_symlink("/proc/self/exe").string()
-                                           : player.program};
+  const std::string own = fs::read_symlink("/proc/self/exe").string();
+  const std::string program = player.is_graph ? own : ProductProgram();
+  std::vector<std::string> command{player.program.empty() ? program : player.program};
   if (!ports) {
     const std::vector<std::string> words = AchieveWords(order, player.threads);
     command.insert(command.end(), words.begin(), words.end());

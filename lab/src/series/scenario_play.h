@@ -15,7 +15,7 @@ constexpr char kScenarioRunVerb[] = "scenario_run";
 
 /// How runs of a series are played.
 struct ScenarioPlayer {
-  std::string program;       ///< `hires`; empty: this one
+  std::string program;       ///< empty: `hires`, or this one for a graph
   bool is_graph{false};      ///< through the graph of nodes; else by `hires achieve --local`
   int threads{2};            ///< that play rollouts, where it is no graph
   int workers{1};            ///< simulators that imagine, of a graph

@@ -13,7 +13,7 @@ namespace {
 
 using nlohmann::ordered_json;
 
-constexpr char kKind[] = "hires scenarios 1";
+constexpr char kKind[] = "hires_lab scenarios 1";
 constexpr char kKnownFluents[] = "known_fluents";
 
 /// The same for writing and reading.

@@ -9,7 +9,7 @@ class App;
 
 namespace hires::lab {
 
-/// What was typed behind `hires experiences`.
+/// What was typed behind `hires_lab experiences`.
 struct ExperiencesOptions {
   std::string store, csv, json, state, action, run;
   double from{0.0}, to{0.0};

@@ -21,7 +21,7 @@ class App;
 
 namespace hires::lab {
 
-/// What was typed behind `hires experiment`.
+/// What was typed behind `hires_lab experiment`.
 struct ExperimentOptions {
   std::string file, map, csv, junit, experiences;
   cli::ReportOptions report;
@@ -29,13 +29,13 @@ struct ExperimentOptions {
   int threads{0}, runs{0};
   bool quiet{false}, only_hashes{false};
   CLI::App* verb{nullptr};         ///< tells what was given
-  HypothesisOptions hypothesis;    ///< of `hires experiment hypothesis`
-  DecisionOptions decision;        ///< of `hires experiment decision`
-  RecognitionOptions recognition;  ///< of `hires experiment recognition`
-  DetectorFitOptions detector;     ///< of `hires experiment detector`
-  PoseErrorOptions pose_error;     ///< of `hires experiment localisation`
-  LadderOptions ladder;            ///< of `hires experiment ladder`
-  TorsoPosesOptions torso_poses;   ///< of `hires experiment torso_poses`
+  HypothesisOptions hypothesis;    ///< of `hires_lab experiment hypothesis`
+  DecisionOptions decision;        ///< of `hires_lab experiment decision`
+  RecognitionOptions recognition;  ///< of `hires_lab experiment recognition`
+  DetectorFitOptions detector;     ///< of `hires_lab experiment detector`
+  PoseErrorOptions pose_error;     ///< of `hires_lab experiment localisation`
+  LadderOptions ladder;            ///< of `hires_lab experiment ladder`
+  TorsoPosesOptions torso_poses;   ///< of `hires_lab experiment torso_poses`
 };
 
 /// Adds the verb to the program, with `hypothesis`, `decision` and so on below it.  @pre `options`
@@ -48,7 +48,7 @@ void AddExperimentVerb(CLI::App* app, ExperimentOptions* options);
 int RunExperimentVerb(const ExperimentOptions& options, const std::function<bool()>& cancelled);
 
 /// Below a printed result that other configuration may change: which one it is of.
-/// @param hash  by evaluation::ConfigurationHash.
+/// @param hash  by reports::ConfigurationHash.
 std::string FilesLine(const std::string& hash);
 
 }  // namespace hires::lab

@@ -59,8 +59,8 @@ std::string DefaultMotionSet(const planning::OperatorData& operators) {
 }
 
 /// Everything that all tasks share.
-struct Stage {
-  Stage(const DecisionOptions& options, const std::string& package_folder)
+struct DecisionStage {
+  DecisionStage(const DecisionOptions& options, const std::string& package_folder)
       : config(ReadDecisionConfig(package_folder + "/lab/config/decision.yaml")),
         setup(package_folder + "/config/loop.yaml"),
         truth(setup.ReadTruth(options.truth)) {
@@ -77,7 +77,7 @@ struct Stage {
   sim_robot::Truth truth;
 };
 
-DecisionParts PartsOf(const Stage& stage, const std::function<bool()>& cancelled) {
+DecisionParts PartsOf(const DecisionStage& stage, const std::function<bool()>& cancelled) {
   DecisionParts parts{stage.setup.world(), stage.setup.imagination().scheduler};
   parts.oracle_plays = stage.config.oracle_plays;
   parts.cancelled = cancelled;
@@ -88,14 +88,14 @@ DecisionParts PartsOf(const Stage& stage, const std::function<bool()>& cancelled
   return parts;
 }
 
-DecisionNeeds NeedsOf(const Stage& stage) {
+DecisionNeeds NeedsOf(const DecisionStage& stage) {
   const std::vector<std::string>& arms = stage.setting.arms;
   return {stage.setting.truth,
           HasArm(arms, kImaginationArm) || HasArm(arms, kDissertationArm),
           HasArm(arms, kOracleArm)};
 }
 
-std::vector<DecisionTask> TasksOf(const Stage& stage, const DecisionOptions& options) {
+std::vector<DecisionTask> TasksOf(const DecisionStage& stage, const DecisionOptions& options) {
   std::vector<DecisionTask> tasks;
   for (int number = 1; number <= options.runs; ++number) {
     tasks.push_back(DrawTask(stage.config, options.seed, number));
@@ -124,7 +124,7 @@ class Shown {
 };
 
 /// @return false when cancelled.
-bool PlayAll(const std::vector<DecisionPiece>& pieces, const Stage& stage,
+bool PlayAll(const std::vector<DecisionPiece>& pieces, const DecisionStage& stage,
              const DecisionParts& parts, const DecisionOptions& options,
              DecisionJournal* journal) {
   Shown shown(options.quiet, pieces.size());
@@ -141,7 +141,7 @@ bool PlayAll(const std::vector<DecisionPiece>& pieces, const Stage& stage,
 }
 
 std::string CommandOf(const DecisionOptions& options) {
-  return fmt::format("hires experiment decision --truth {} --runs {} --seed {}{} --resume {}",
+  return fmt::format("hires_lab experiment decision --truth {} --runs {} --seed {}{} --resume {}",
                      options.truth, options.runs, options.seed,
                      options.arms.empty() ? "" : " --arms " + options.arms, JournalPath(options));
 }
@@ -179,7 +179,7 @@ int RunDecisionVerb(const DecisionOptions& options, const std::string& package_f
   for (const std::string& path : {JournalPath(options), options.json}) {
     if (!path.empty()) reports::RequireFolderOf(path);
   }
-  const Stage stage(options, package_folder);
+  const DecisionStage stage(options, package_folder);
   const DecisionParts parts = PartsOf(stage, cancelled);
   const DecisionNeeds needs = NeedsOf(stage);
   const std::vector<DecisionTask> tasks = TasksOf(stage, options);

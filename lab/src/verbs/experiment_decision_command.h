@@ -10,7 +10,7 @@ class App;
 
 namespace hires::lab {
 
-/// What was typed behind `hires experiment decision`.
+/// What was typed behind `hires_lab experiment decision`.
 struct DecisionOptions {
   std::string truth{"same"}, arms, journal, json;
   int runs{400}, threads{2};

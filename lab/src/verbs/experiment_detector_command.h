@@ -10,7 +10,7 @@ class App;
 
 namespace hires::lab {
 
-/// What was typed behind `hires experiment detector`.
+/// What was typed behind `hires_lab experiment detector`.
 struct DetectorFitOptions {
   std::string config, objects, output, json;
   int tables{1000}, held_out{500}, threads{0};

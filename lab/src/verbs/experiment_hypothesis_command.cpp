@@ -76,7 +76,7 @@ std::string CommandOf(const HypothesisOptions& options) {
   const std::string how =
       options.is_local ? fmt::format("--local --truth {}", cli::Quoted(options.truth))
                        : fmt::format("--pace {:g} --workers {}", options.pace, options.workers);
-  return fmt::format("hires experiment hypothesis --scenario {} --runs {} --seed {} {} --resume {}",
+  return fmt::format("hires_lab experiment hypothesis --scenario {} --runs {} --seed {} {} --resume {}",
                      cli::Quoted(options.scenario), options.runs, options.seed, how,
                      cli::Quoted(JournalPath(options)));
 }

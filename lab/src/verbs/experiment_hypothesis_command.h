@@ -14,7 +14,7 @@ class App;
 
 namespace hires::lab {
 
-/// What was typed behind `hires experiment hypothesis`.
+/// What was typed behind `hires_lab experiment hypothesis`.
 struct HypothesisOptions {
   std::string scenario, journal, csv, logs;
   cli::ReportOptions report;

@@ -10,7 +10,7 @@ class App;
 
 namespace hires::lab {
 
-/// What was typed behind `hires experiment ladder`.
+/// What was typed behind `hires_lab experiment ladder`.
 struct LadderOptions {
   std::string json;
   double seconds{90.0};

@@ -10,7 +10,7 @@ class App;
 
 namespace hires::lab {
 
-/// What was typed behind `hires experiment localisation`.
+/// What was typed behind `hires_lab experiment localisation`.
 struct PoseErrorOptions {
   std::string drives, output, json;
   int series{4}, held_out{4}, threads{0};

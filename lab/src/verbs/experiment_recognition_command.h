@@ -10,7 +10,7 @@ class App;
 
 namespace hires::lab {
 
-/// What was typed behind `hires experiment recognition`.
+/// What was typed behind `hires_lab experiment recognition`.
 struct RecognitionOptions {
   std::string config, objects, json, clouds;
   int tables{500}, threads{0};

@@ -10,7 +10,7 @@ class App;
 
 namespace hires::lab {
 
-/// What was typed behind `hires experiment torso_poses`.
+/// What was typed behind `hires_lab experiment torso_poses`.
 struct TorsoPosesOptions {
   std::string config, json, stand, area;
   int looks{10}, threads{0};

@@ -1,3 +1,4 @@
+#include "lab/src/product_program.h"
 #include "lab/src/verbs/reproduce_command.h"
 
 #include <fmt/format.h>
@@ -83,7 +84,7 @@ int List(const std::vector<CatalogueItem>& items, const std::vector<Play>& plays
     const auto stored = store->Find(play);
     seconds += stored ? stored->seconds : play.seconds;
     if (!stored) missing += play.seconds;
-    std::vector<std::string> words{"hires"};
+    std::vector<std::string> words{ProgramNameOf(play)};
     words.insert(words.end(), play.command.begin(), play.command.end());
     rows.push_back({play.name,
                     !stored                           ? "missing"
@@ -169,9 +170,10 @@ int RunReproduceVerb(const ReproduceOptions& options, const std::string& package
       catalogue, options.wanted.empty() ? std::vector<std::string>{"all"} : options.wanted);
   PlaysOrder order;
   order.plays = PlaysFor(catalogue, items);
-  order.program = std::filesystem::read_symlink("/proc/self/exe").string();
+  order.lab_program = std::filesystem::read_symlink("/proc/self/exe").string();
+  order.program = ProductProgram();
   const std::string results = ResultsFolder(options);
-  PlayStore store({results, package_folder, HashOfFile(order.program)});
+  PlayStore store({results, package_folder, HashOfFile(order.lab_program)});
   if (options.is_list) return List(items, order.plays, &store);
   const base::WriterLock lock(results + "/results", "name another folder with --results");
   cli::CheckReport(options.report);

@@ -8,7 +8,7 @@
 
 namespace hires::lab {
 
-/// What was typed behind `hires reproduce`.
+/// What was typed behind `hires_lab reproduce`.
 struct ReproduceOptions {
   std::vector<std::string> wanted;
   std::string catalogue, results;

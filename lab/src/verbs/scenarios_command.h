@@ -13,7 +13,7 @@ class App;
 
 namespace hires::lab {
 
-/// Exit codes of `hires scenarios`.
+/// Exit codes of `hires_lab scenarios`.
 enum ScenariosExitCode {
   kExitAllSucceeded = 0,
   kExitSeriesBadInput = 1,   ///< the message says what is wrong
@@ -21,7 +21,7 @@ enum ScenariosExitCode {
   kExitSomeBroken = 3        ///< some run broke down in each of its tries
 };                           // and kExitCancelled
 
-/// What was typed behind `hires scenarios`.
+/// What was typed behind `hires_lab scenarios`.
 struct ScenariosOptions {
   std::string file, scenario, instruction, truth, world, csv;
   std::string store{"hires_scenarios"}, order{"all"};

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""`hires experiment hypothesis` with whole systems that die, are interrupted, or lose their
+"""`hires_lab experiment hypothesis` with whole systems that die, are interrupted, or lose their
 experiment: run alone, or by `rostest hires hypothesis.test`."""
 
 import json

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""`hires scenarios --graph` with whole graphs: a task that is done, a planner that is killed, a worker
+"""`hires_lab scenarios --graph` with whole graphs: a task that is done, a planner that is killed, a worker
 that is stopped, a runner that is killed. Run alone, or by `rostest hires scenarios_graph.test`."""
 
 import json

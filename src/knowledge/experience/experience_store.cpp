@@ -75,7 +75,8 @@ void Bind(const ExperienceQuery& query, SQLite::Statement* statement) {
 }
 
 constexpr char kMakers[] =
-    "`hires experiment lab/config/experiments/topple_loop.yaml --experiences FILE` makes them, or "
+    "`hires_lab experiment lab/config/experiments/topple_loop.yaml --experiences FILE` makes them, "
+    "or "
     "`roslaunch hires topple.launch experiences:=FILE`";
 
 [[noreturn]] void FailWithoutExperiences(const std::string& path) {

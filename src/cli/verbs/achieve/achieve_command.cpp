@@ -97,7 +97,7 @@ void WriteFiles(const AchieveOptions& options, const ReportOrigin& origin,
     const std::string csv = reports::TimelineCsv(reports::MakeTimeline(report));
     base::ReplaceTextFile(options.timeline, csv);
   }
-  nlohmann::ordered_json json = ToJson(report);
+  nlohmann::ordered_json json = reports::ToJson(report);
   if (local) {
     json["truth"] = local->truth_name;
     json["in_truth"] = EndOf(*local);
