@@ -202,7 +202,7 @@ class PageTest(unittest.TestCase):
 class CatalogueTest(unittest.TestCase):
     def test_each_drawing_of_the_shipped_catalogue_is_known(self):
         import yaml
-        with open(os.path.join(ROOT, 'config', 'reproduce.yaml'), encoding='utf-8') as file:
+        with open(os.path.join(ROOT, 'lab', 'config', 'reproduce.yaml'), encoding='utf-8') as file:
             items = yaml.safe_load(file)['items']
         drawings = {drawing.split(':')[1] for item in items for drawing in item.get('drawings', [])}
         self.assertEqual(drawings, set(report_reproduce.DRAWINGS))
@@ -211,7 +211,7 @@ class CatalogueTest(unittest.TestCase):
         import yaml
         files = []
         for name in ('reproduce.yaml', os.path.join('experiments', 'durations.yaml')):
-            with open(os.path.join(ROOT, 'config', name), encoding='utf-8') as file:
+            with open(os.path.join(ROOT, 'lab', 'config', name), encoding='utf-8') as file:
                 files.append(yaml.safe_load(file))
         wanted = {}
         for action in files[1]['durations']['actions']:

@@ -116,14 +116,14 @@ class ToppleMonitorTest(unittest.TestCase):
             self.assertTrue(self.changed.wait_for(lambda: len(self.parts) >= number, 60.0),
                             '%d parts of %d' % (len(self.parts), number))
 
-    def hires(self, *arguments):
-        return subprocess.run([executable('hires'), *arguments], check=True, stdout=subprocess.PIPE,
+    def lab(self, *arguments):
+        return subprocess.run([executable('hires_lab'), *arguments], check=True, stdout=subprocess.PIPE,
                               text=True, timeout=60).stdout
 
     def stored(self, *query):
         """As lines of Listing 5.4."""
         path = os.path.join(self.system.processes.folder.name, 'parts.csv')
-        self.hires('experiences', 'export', self.store, '--csv', path, *query)
+        self.lab('experiences', 'export', self.store, '--csv', path, *query)
         lines = []
         with open(path) as file:
             for text in file:
@@ -189,7 +189,7 @@ class ToppleMonitorTest(unittest.TestCase):
         self.assertGreater(len(self.stored('--run', 'third')), 0)
         self.assertEqual(self.stored('--run', 'second'), before)
         self.assertIn('move_base_param(preManipulationAreaSouthTable1, fast)',
-                      self.hires('experiences', 'stats', self.store))
+                      self.lab('experiences', 'stats', self.store))
 
     def wait_for_goals_to_be_heard(self):
         """By the node, beside the middle layer."""
