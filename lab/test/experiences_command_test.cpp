@@ -4,7 +4,7 @@
 
 #include "lab/test/lab_run.h"
 #include "hires/base/text.h"
-#include "cli/command_line.h"
+#include "cli/exit_code.h"
 #include "hires/knowledge/experience.h"
 #include "support/temporary_folder.h"
 

@@ -8,7 +8,7 @@
 #include "lab/test/lab_run.h"
 #include "lab/test/hypothesis_examples.h"
 #include "hires/base/text.h"
-#include "cli/command_line.h"
+#include "cli/exit_code.h"
 #include "support/temporary_folder.h"
 
 namespace hires::lab::experiment_hypothesis_command_test {

@@ -3,14 +3,12 @@
 #include <CLI/CLI.hpp>
 #include <map>
 
+#include "cli/local_verbs.h"
 #include "cli/program.h"
 #include "cli/report_output.h"
 #include "cli/verb_table.h"
 #include "cli/verbs/achieve/achieve_command.h"
 #include "cli/verbs/blackboard/blackboard_command.h"
-#include "cli/verbs/doctor/doctor.h"
-#include "cli/verbs/imagine/imagine_command.h"
-#include "cli/verbs/limits/limits_command.h"
 #include "cli/verbs/list/list_command.h"
 #include "cli/verbs/localise/localise_command.h"
 #include "cli/verbs/map/map_command.h"
@@ -38,19 +36,12 @@ int Achieve(const AchieveOptions& achieve, const Backends& backends) {
                         backends.record_loop);
 }
 
-ReportOptions* ReportOfDoctor(DoctorOptions* options) { return &options->robot.report; }
-
 std::vector<ProgramVerb> VerbsOf(CLI::App* app, const std::vector<std::string>& arguments,
                                  const Backends& backends) {
   const std::string& folder = backends.package_folder;
   VerbTable table(app, {CommandOf(kProgramName, arguments), folder});
-  table.Add<ImagineOptions>(AddImagineVerb, ReportOf<ImagineOptions>,
-                            [&](const ImagineOptions& options) {
-                              return RunImagineVerb(options, backends, IsInterrupted);
-                            });
-  table.Add<LimitsOptions>(AddLimitsVerb, nullptr, [&](const LimitsOptions& options) {
-    return RunLimitsVerb(options, folder, IsInterrupted);
-  });
+  AddImagine({backends.imagine_remotely, backends.make_rollout_bag}, &table);
+  AddLimits(&table);
   table.Add<AchieveOptions>(
       AddAchieveVerb, ReportOf<AchieveOptions>,
       [&](const AchieveOptions& options) { return Achieve(options, backends); });
@@ -60,9 +51,7 @@ std::vector<ProgramVerb> VerbsOf(CLI::App* app, const std::vector<std::string>& 
   table.Add<BlackboardOptions>(AddBlackboardVerb, nullptr, [&](const BlackboardOptions& options) {
     return RunBlackboardVerb(options, folder, backends.connect_blackboard);
   });
-  table.Add<ListOptions>(
-      AddListVerb, nullptr,
-      [&](const ListOptions& options) { return RunListVerb(options, folder); }, OnSignal::kEnd);
+  AddList(&table);
   table.Add<RecogniseOptions>(
       AddRecogniseVerb, nullptr,
       [&](const RecogniseOptions& options) { return RunRecogniseVerb(options, folder); },
@@ -80,10 +69,7 @@ std::vector<ProgramVerb> VerbsOf(CLI::App* app, const std::vector<std::string>& 
       AddReportVerb, nullptr,
       [&](const StoredReportOptions& options) { return RunReportVerb(options, folder); },
       OnSignal::kEnd);
-  table.Add<DoctorOptions>(
-      AddDoctorVerb, ReportOfDoctor,
-      [&](const DoctorOptions& options) { return RunDoctorVerb(options, backends); },
-      OnSignal::kEnd);
+  AddDoctor({folder, backends.examine_robot, backends.more_checks}, &table);
   for (const Verb& verb : backends.more_verbs) table.AddForeign(verb.name, verb.help, verb.run);
   return table.Take();
 }
@@ -98,14 +84,6 @@ std::map<std::string, std::string> MovedToTheLab() {
 }
 
 }  // namespace
-
-std::string NameOf(const std::string& object, imagination::SetupConfig* setup) {
-  const bool is_file =
-      object.find('/') != std::string::npos || object.find('.') != std::string::npos;
-  if (!is_file) return object;
-  setup->extra_objects.push_back(object);
-  return world::LoadObjectModel(object).name;
-}
 
 int RunCommandLine(const std::vector<std::string>& arguments, const Backends& backends) {
   const auto add_verbs = [&](CLI::App* app) { return VerbsOf(app, arguments, backends); };

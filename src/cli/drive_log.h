@@ -1,8 +1,8 @@
 #pragma once
 
+#include <functional>
 #include <string>
 
-#include "cli/command_line.h"
 #include "hires/geometry/pose.h"
 #include "hires/localisation/robot_log.h"
 #include "hires/sensing/drive_builder.h"
@@ -12,6 +12,10 @@ class App;
 }
 
 namespace hires::cli {
+
+/// Reads a drive from a bag.  @throws base::ConfigError naming the bag and what is wrong with it.
+using ReadDriveBag = std::function<localisation::RobotLog(const std::string& path,
+                                                          const sensing::DriveSource& source)>;
 
 /// What was typed of the drive that a verb works on.
 struct DriveOptions {

@@ -50,6 +50,7 @@ class VerbTable {
     report->command = call_.command;
     report->package_folder = call_.package_folder;
   }
+  const std::string& package_folder() const { return call_.package_folder; }
   std::vector<ProgramVerb> Take() { return std::move(verbs_); }
 
  private:

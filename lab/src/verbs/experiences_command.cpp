@@ -12,7 +12,7 @@
 #include "hires/base/error.h"
 #include "hires/base/files/own_input.h"
 #include "hires/base/text.h"
-#include "cli/command_line.h"
+#include "cli/exit_code.h"
 #include "cli/whole_number.h"
 #include "lab/src/experience/experience_report.h"
 #include "reports/report_json.h"

@@ -10,7 +10,7 @@
 #include "lab/src/verbs/experiment_command.h"
 #include "hires/base/hash.h"
 #include "hires/base/text.h"
-#include "cli/command_line.h"
+#include "cli/exit_code.h"
 #include "cli/crew_display.h"
 #include "cli/report_output.h"
 #include "cli/whole_number.h"

@@ -7,7 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "lab/src/verbs/experiment_command.h"
-#include "cli/command_line.h"
+#include "cli/exit_code.h"
 #include "cli/crew_display.h"
 #include "cli/whole_number.h"
 #include "lab/src/ladder/ladder.h"

@@ -6,7 +6,7 @@
 
 #include "lab/src/verbs/experiment_command.h"
 #include "hires/base/text.h"
-#include "cli/command_line.h"
+#include "cli/exit_code.h"
 #include "cli/crew_display.h"
 #include "cli/whole_number.h"
 #include "reports/configuration_hash.h"

@@ -5,7 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "lab/src/verbs/experiment_command.h"
-#include "cli/command_line.h"
+#include "cli/exit_code.h"
 #include "cli/crew_display.h"
 #include "cli/whole_number.h"
 #include "reports/configuration_hash.h"

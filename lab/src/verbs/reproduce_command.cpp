@@ -19,7 +19,7 @@
 #include "hires/base/files/writer_lock.h"
 #include "hires/base/spelling.h"
 #include "hires/base/text.h"
-#include "cli/command_line.h"
+#include "cli/exit_code.h"
 #include "cli/crew_display.h"
 #include "reports/report_table.h"
 #include "lab/src/reproduce/catalogue.h"

@@ -17,7 +17,7 @@
 #include "hires/base/process.h"
 #include "hires/base/spelling.h"
 #include "hires/base/text.h"
-#include "cli/command_line.h"
+#include "cli/exit_code.h"
 #include "cli/crew_display.h"
 #include "cli/whole_number.h"
 #include "reports/report_json.h"

@@ -8,7 +8,7 @@
 #include <thread>
 #include <vector>
 
-#include "cli/command_line.h"
+#include "cli/exit_code.h"
 #include "cli/whole_number.h"
 #include "hires/base/error.h"
 #include "hires/imagination/client_config.h"
@@ -33,7 +33,7 @@ struct Findings {
   }
 };
 
-Finding CheckFiles(const Backends& backends) {
+Finding CheckFiles(const DoctorBackends& backends) {
   try {
     const auto client =
         imagination::ReadClientConfig(backends.package_folder + "/config/imagination_client.yaml");
@@ -89,7 +89,7 @@ void CheckPhysics(Findings* findings) {
   }
 }
 
-int CheckAll(const Backends& backends, bool with_physics, const ReportOptions& report) {
+int CheckAll(const DoctorBackends& backends, bool with_physics, const ReportOptions& report) {
   CheckReport(report);
   Findings findings;
   findings.Add(CheckMachine());
@@ -135,7 +135,7 @@ void AddDoctorVerb(CLI::App* app, DoctorOptions* o) {
   AddReportOptions(o->verb, &o->robot.report);
 }
 
-int RunDoctorVerb(const DoctorOptions& options, const Backends& backends) {
+int RunDoctorVerb(const DoctorOptions& options, const DoctorBackends& backends) {
   if (!options.is_robot) {
     return CheckAll(backends, !options.is_without_physics, options.robot.report);
   }

@@ -2,16 +2,16 @@
 
 #include <functional>
 #include <string>
+#include <vector>
 
 #include "cli/report_output.h"
+#include "cli/verbs/doctor/finding.h"
 
 namespace CLI {
 class App;
 }
 
 namespace hires::cli {
-
-struct Backends;
 
 /// `hires doctor --robot`.
 struct RobotDoctorOptions {
@@ -25,6 +25,16 @@ struct RobotDoctorOptions {
 
 /// Looks at a running robot.  @return Exit code.  @throws base::ConfigError.
 using ExamineRobot = std::function<int(const RobotDoctorOptions&)>;
+
+/// A check of `hires doctor` that another layer adds.
+using Check = std::function<std::vector<Finding>()>;
+
+/// What `hires doctor` can do beyond this process.
+struct DoctorBackends {
+  std::string package_folder;  ///< where config/, worlds/, urdf/ lie
+  ExamineRobot examine_robot;  ///< may be empty
+  std::vector<Check> more_checks;
+};
 
 /// What was typed behind `hires doctor`.
 struct DoctorOptions {
@@ -42,6 +52,6 @@ void AddDoctorVerb(CLI::App* app, DoctorOptions* options);
 /// at a running robot instead.
 /// @return 0 if all passed, else kExitBadInput.
 /// @throws base::ConfigError for --robot where there are no ROS nodes to ask.
-int RunDoctorVerb(const DoctorOptions& options, const Backends& backends);
+int RunDoctorVerb(const DoctorOptions& options, const DoctorBackends& backends);
 
 }  // namespace hires::cli

@@ -6,7 +6,7 @@
 #include <iostream>
 #include <nlohmann/json.hpp>
 
-#include "cli/command_line.h"
+#include "cli/exit_code.h"
 #include "cli/verbs/doctor/robot_doctor_hosts.h"
 #include "cli/verbs/doctor/robot_doctor_judge.h"
 #include "reports/report_table.h"

@@ -12,6 +12,8 @@
 #include <set>
 #include <thread>
 
+#include "cli/exit_code.h"
+#include "cli/own_object.h"
 #include "cli/whole_number.h"
 #include "hires/base/error.h"
 #include "hires/base/hash.h"
@@ -293,7 +295,7 @@ std::string NameOf(const std::string& object, imagination::SetupConfig* setup) {
   return world::LoadObjectModel(object).name;
 }
 
-int RunImagineVerb(const ImagineOptions& options, const Backends& backends,
+int RunImagineVerb(const ImagineOptions& options, const ImagineBackends& backends,
                    const std::function<bool()>& cancelled) {
   const ImagineQuery query = MakeQuery(options);
   CheckReport(options.report);

@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "cli/command_line.h"
 #include "cli/report_output.h"
+#include "cli/verbs/imagine/imagine_query.h"
 #include "cli/verbs/imagine/query_scene.h"
 #include "cli/verbs/imagine/save_rollout.h"
 
@@ -31,7 +31,7 @@ void AddImagineVerb(CLI::App* app, ImagineOptions* options);
 
 /// Plays alternatives of an action, in this process or through running nodes, prints and writes.
 /// @return as ExitCodeOf.  @throws base::ConfigError for bad input.
-int RunImagineVerb(const ImagineOptions& options, const Backends& backends,
+int RunImagineVerb(const ImagineOptions& options, const ImagineBackends& backends,
                    const std::function<bool()>& cancelled);
 
 }  // namespace hires::cli

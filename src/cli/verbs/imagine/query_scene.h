@@ -2,7 +2,7 @@
 
 #include <optional>
 
-#include "cli/command_line.h"
+#include "cli/verbs/imagine/imagine_query.h"
 #include "hires/imagination/imagination_setup.h"
 #include "hires/imagination/rollout.h"
 #include "hires/imagination/start_state.h"

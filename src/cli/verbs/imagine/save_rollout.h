@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "cli/command_line.h"
+#include "cli/verbs/imagine/imagine_query.h"
 #include "cli/verbs/imagine/query_scene.h"
 #include "hires/imagination/rollout_recording.h"
 

@@ -9,8 +9,9 @@
 #include <nlohmann/json.hpp>
 #include <thread>
 
-#include "cli/command_line.h"
 #include "cli/crew_display.h"
+#include "cli/exit_code.h"
+#include "cli/own_object.h"
 #include "cli/whole_number.h"
 #include "hires/base/process.h"
 #include "hires/base/text.h"

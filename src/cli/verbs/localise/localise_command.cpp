@@ -9,8 +9,8 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 
-#include "cli/command_line.h"
 #include "cli/drive_log.h"
+#include "cli/exit_code.h"
 #include "cli/whole_number.h"
 #include "hires/base/error.h"
 #include "hires/base/text.h"

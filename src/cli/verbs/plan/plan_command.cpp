@@ -8,7 +8,7 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 
-#include "cli/command_line.h"
+#include "cli/exit_code.h"
 #include "cli/whole_number.h"
 #include "hires/base/error.h"
 #include "hires/base/resource_use.h"

@@ -8,7 +8,7 @@
 #include <nlohmann/json.hpp>
 #include <utility>
 
-#include "cli/command_line.h"
+#include "cli/exit_code.h"
 #include "cli/report_output.h"
 #include "hires/base/error.h"
 #include "hires/base/files/own_input.h"

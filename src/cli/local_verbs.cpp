@@ -1,0 +1,63 @@
+#include "cli/local_verbs.h"
+
+#include "cli/program.h"
+#include "cli/verbs/imagine/imagine_command.h"
+#include "cli/verbs/limits/limits_command.h"
+#include "cli/verbs/list/list_command.h"
+
+namespace hires::cli {
+namespace {
+
+constexpr char kLocalProgram[] = "hires_local";
+
+ReportOptions* ReportOfDoctor(DoctorOptions* options) { return &options->robot.report; }
+
+}  // namespace
+
+void AddImagine(const ImagineBackends& backends, VerbTable* table) {
+  table->Add<ImagineOptions>(AddImagineVerb, ReportOf<ImagineOptions>,
+                             [backends](const ImagineOptions& options) {
+                               return RunImagineVerb(options, backends, IsInterrupted);
+                             });
+}
+
+void AddLimits(VerbTable* table) {
+  table->Add<LimitsOptions>(AddLimitsVerb, nullptr,
+                            [folder = table->package_folder()](const LimitsOptions& options) {
+                              return RunLimitsVerb(options, folder, IsInterrupted);
+                            });
+}
+
+void AddList(VerbTable* table) {
+  table->Add<ListOptions>(
+      AddListVerb, nullptr,
+      [folder = table->package_folder()](const ListOptions& options) {
+        return RunListVerb(options, folder);
+      },
+      OnSignal::kEnd);
+}
+
+void AddDoctor(const DoctorBackends& backends, VerbTable* table) {
+  table->Add<DoctorOptions>(
+      AddDoctorVerb, ReportOfDoctor,
+      [backends](const DoctorOptions& options) { return RunDoctorVerb(options, backends); },
+      OnSignal::kEnd);
+}
+
+int RunLocalCommandLine(const std::vector<std::string>& arguments,
+                        const std::string& package_folder) {
+  const auto add_verbs = [&](CLI::App* app) {
+    VerbTable table(app, {CommandOf(kLocalProgram, arguments), package_folder});
+    AddImagine({}, &table);
+    AddLimits(&table);
+    AddList(&table);
+    AddDoctor({package_folder, {}, {}}, &table);
+    return table.Take();
+  };
+  return RunProgram(
+      {kLocalProgram, "HIRES in one process: imagine an action in physics before doing it",
+       add_verbs},
+      arguments);
+}
+
+}  // namespace hires::cli
