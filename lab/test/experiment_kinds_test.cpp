@@ -6,7 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "lab/src/experiment/kinds.h"
-#include "reports/statistics.h"
+#include "reports/text/statistics.h"
 
 namespace hires::lab::experiment_kinds_test {
 namespace {

@@ -1,9 +1,8 @@
-// `hires` of the build without ROS: imagines in its own process.
-#include "cli/command_line.h"
+// What can be answered in one process, without nodes.
+#include "cli/local_verbs.h"
 #include "cli/package_folder.h"
 
 int main(int argc, char** argv) {
-  hires::cli::Backends backends;
-  backends.package_folder = hires::cli::LocalPackageFolder(HIRES_SOURCE_DIR);
-  return hires::cli::RunCommandLine({argv, argv + argc}, backends);
+  return hires::cli::RunLocalCommandLine({argv, argv + argc},
+                                         hires::cli::LocalPackageFolder(HIRES_SOURCE_DIR));
 }

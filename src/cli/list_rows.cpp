@@ -6,8 +6,8 @@
 #include <nlohmann/json.hpp>
 
 #include "hires/base/text.h"
-#include "reports/report_json.h"
-#include "reports/report_table.h"
+#include "reports/text/report_json.h"
+#include "reports/text/report_table.h"
 
 namespace hires::cli {
 namespace {

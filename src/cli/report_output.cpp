@@ -17,7 +17,7 @@
 #include "hires/base/files/own_input.h"
 #include "hires/base/hash.h"
 #include "hires/base/text.h"
-#include "reports/report_json.h"
+#include "reports/text/report_json.h"
 
 extern char** environ;
 

@@ -4,7 +4,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "reports/report_json.h"
+#include "reports/text/report_json.h"
 
 namespace hires::python {
 

@@ -11,7 +11,7 @@
 #include "python/answer.h"
 #include "python/arguments.h"
 #include "python/scene.h"
-#include "reports/report_json.h"
+#include "reports/text/report_json.h"
 
 namespace py = pybind11;
 using hires::imagination::Prediction;

@@ -4,7 +4,7 @@
 
 #include "hires/base/text.h"
 #include "loop/task_loop.h"
-#include "reports/timeline.h"
+#include "reports/task/timeline.h"
 #include "support/temporary_folder.h"
 
 // Messages that are late or lost on their way between the parts of the loop.

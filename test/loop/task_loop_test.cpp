@@ -7,7 +7,7 @@
 
 #include "hires/base/error.h"
 #include "loop/support/task_setup.h"
-#include "reports/timeline.h"
+#include "reports/task/timeline.h"
 #include "support/log_catcher.h"
 
 namespace hires::loop::task_loop_test {

@@ -1,6 +1,6 @@
 // What makes a printed result stale, and what does not.
 
-#include "reports/configuration_hash.h"
+#include "reports/text/configuration_hash.h"
 
 #include <gmock/gmock.h>
 

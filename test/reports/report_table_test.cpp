@@ -1,4 +1,4 @@
-#include "reports/report_table.h"
+#include "reports/text/report_table.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

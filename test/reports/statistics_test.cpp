@@ -1,4 +1,4 @@
-#include "reports/statistics.h"
+#include "reports/text/statistics.h"
 
 #include <gtest/gtest.h>
 

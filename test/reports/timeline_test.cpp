@@ -1,4 +1,4 @@
-#include "reports/timeline.h"
+#include "reports/task/timeline.h"
 
 #include <gmock/gmock.h>
 

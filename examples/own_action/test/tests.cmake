@@ -7,7 +7,7 @@ add_test(NAME examples.own_action COMMAND hires_own_action_test)
 if(HIRES_ROS)
   set(hires $<TARGET_FILE:hires_hires_node>)
 else()
-  set(hires $<TARGET_FILE:hires_local>)
+  set(hires $<TARGET_FILE:hires_program>)
 endif()
 set(says ${PYTHON_EXECUTABLE} -B ${PROJECT_SOURCE_DIR}/../../test/run_says.py)
 add_test(NAME examples.own_action_planned COMMAND ${says}

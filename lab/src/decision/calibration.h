@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "hires/base/rng.h"
-#include "reports/statistics.h"
+#include "reports/text/statistics.h"
 
 // How well probabilities that were said beforehand fit what came.
 namespace hires::lab {

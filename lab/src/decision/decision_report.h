@@ -8,7 +8,7 @@
 
 #include "lab/src/decision/calibration.h"
 #include "lab/src/decision/decision.h"
-#include "reports/statistics.h"
+#include "reports/text/statistics.h"
 
 namespace hires::lab {
 

@@ -4,7 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "lab/src/decision/decision_report.h"
-#include "reports/report_table.h"
+#include "reports/text/report_table.h"
 
 namespace hires::lab {
 namespace {

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "reports/statistics.h"
+#include "reports/text/statistics.h"
 
 // Predicting how long an action takes on a robot from how long it takes when it is played, with
 // numbers that are fitted on other routes only.

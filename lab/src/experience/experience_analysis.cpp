@@ -9,7 +9,7 @@
 #include "lab/src/experience/filter_trial.h"
 #include "hires/base/error.h"
 #include "lab/src/experience/experience_report.h"
-#include "reports/report_table.h"
+#include "reports/text/report_table.h"
 
 namespace hires::lab {
 namespace {

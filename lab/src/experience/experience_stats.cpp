@@ -6,7 +6,7 @@
 
 #include "lab/src/experience/experience_runs.h"
 #include "lab/src/experience/experience_report.h"
-#include "reports/report_table.h"
+#include "reports/text/report_table.h"
 #include "hires/imagination/evidence.h"
 
 namespace hires::lab {

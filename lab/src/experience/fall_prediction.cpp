@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "lab/src/experience/separation.h"
-#include "reports/known_number.h"
+#include "reports/text/known_number.h"
 
 namespace hires::lab {
 namespace {

@@ -6,7 +6,7 @@
 
 #include "lab/src/experience/filters.h"
 #include "lab/src/experience/separation.h"
-#include "reports/known_number.h"
+#include "reports/text/known_number.h"
 
 namespace hires::lab {
 namespace {

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "reports/statistics.h"
+#include "reports/text/statistics.h"
 #include "hires/geometry/angles.h"
 
 namespace hires::lab {

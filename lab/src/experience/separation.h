@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "hires/base/rng.h"
-#include "reports/statistics.h"
+#include "reports/text/statistics.h"
 
 // How well a number tells two kinds of moments apart, where moments of one run are not independent.
 namespace hires::lab {

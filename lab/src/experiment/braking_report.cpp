@@ -6,7 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "lab/src/experiment/braking.h"
-#include "reports/statistics.h"
+#include "reports/text/statistics.h"
 
 // What stops that were played come to.
 namespace hires::lab {

@@ -14,7 +14,7 @@
 #include "hires/base/param_reader.h"
 #include "hires/base/rng.h"
 #include "hires/base/text.h"
-#include "reports/timeline.h"
+#include "reports/task/timeline.h"
 
 namespace hires::lab {
 namespace {

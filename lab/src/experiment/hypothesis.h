@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "loop/achieve.h"
-#include "reports/statistics.h"
+#include "reports/text/statistics.h"
 #include "hires/simulation/truth_record.h"
 #include "hires/world/world.h"
 

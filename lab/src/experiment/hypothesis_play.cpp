@@ -10,7 +10,7 @@
 #include "hires/base/process.h"
 #include "hires/base/run_processes.h"
 #include "hires/base/text.h"
-#include "reports/timeline.h"
+#include "reports/task/timeline.h"
 
 namespace hires::lab {
 namespace {

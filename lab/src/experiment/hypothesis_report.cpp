@@ -8,11 +8,11 @@
 #include <nlohmann/json.hpp>
 #include <tuple>
 
-#include "reports/known_number.h"
+#include "reports/text/known_number.h"
 #include "hires/base/check.h"
 #include "hires/base/text.h"
 #include "lab/src/experiment/report.h"
-#include "reports/report_table.h"
+#include "reports/text/report_table.h"
 
 namespace hires::lab {
 namespace {

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "lab/src/experiment/hypothesis.h"
-#include "reports/statistics.h"
+#include "reports/text/statistics.h"
 
 namespace hires::lab {
 

@@ -5,7 +5,7 @@
 #include "lab/src/experiment/kinds.h"
 #include "base/parallel.h"
 #include "hires/base/text.h"
-#include "reports/statistics.h"
+#include "reports/text/statistics.h"
 #include "hires/imagination/evidence.h"
 
 namespace hires::lab {

@@ -7,11 +7,11 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "reports/known_number.h"
+#include "reports/text/known_number.h"
 #include "hires/base/error.h"
 #include "hires/base/hash.h"
 #include "hires/base/text.h"
-#include "reports/report_table.h"
+#include "reports/text/report_table.h"
 
 namespace hires::lab {
 namespace {

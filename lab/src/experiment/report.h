@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "hires/base/param_reader.h"
-#include "reports/statistics.h"
+#include "reports/text/statistics.h"
 
 namespace hires::lab {
 

@@ -2,7 +2,7 @@
 
 #include <utility>
 
-#include "reports/statistics.h"
+#include "reports/text/statistics.h"
 
 namespace hires::lab {
 namespace {

@@ -10,8 +10,8 @@
 #include "hires/base/run_processes.h"
 #include "hires/base/text.h"
 #include "lab/src/series/scenario_play.h"
-#include "reports/report_json.h"
-#include "reports/timeline.h"
+#include "reports/text/report_json.h"
+#include "reports/task/timeline.h"
 #include "lab/src/graph/graph_run.h"
 #include "nodes/hires/remote_achieve.h"
 

@@ -10,7 +10,7 @@
 
 #include "base/parallel.h"
 #include "lab/src/experiment/experiment.h"
-#include "reports/statistics.h"
+#include "reports/text/statistics.h"
 
 namespace hires::lab {
 

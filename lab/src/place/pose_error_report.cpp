@@ -3,7 +3,7 @@
 #include <nlohmann/json.hpp>
 
 #include "lab/src/place/pose_error_fit.h"
-#include "reports/report_table.h"
+#include "reports/text/report_table.h"
 
 namespace hires::lab {
 namespace {

@@ -2,10 +2,10 @@
 
 #include <nlohmann/json.hpp>
 
-#include "reports/known_number.h"
+#include "reports/text/known_number.h"
 #include "hires/base/text.h"
 #include "lab/src/recognition/detector_fit.h"
-#include "reports/report_table.h"
+#include "reports/text/report_table.h"
 
 namespace hires::lab {
 namespace {

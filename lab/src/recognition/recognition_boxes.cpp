@@ -4,8 +4,8 @@
 #include <iterator>
 #include <nlohmann/json.hpp>
 
-#include "reports/known_number.h"
-#include "reports/report_table.h"
+#include "reports/text/known_number.h"
+#include "reports/text/report_table.h"
 
 namespace hires::lab {
 namespace {

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "lab/src/recognition/recognition_experiment.h"
-#include "reports/statistics.h"
+#include "reports/text/statistics.h"
 
 namespace hires::lab {
 

@@ -5,11 +5,11 @@
 #include <map>
 #include <nlohmann/json.hpp>
 
-#include "reports/known_number.h"
+#include "reports/text/known_number.h"
 #include "lab/src/recognition/recognition_boxes.h"
 #include "lab/src/recognition/recognition_goals.h"
 #include "hires/base/text.h"
-#include "reports/report_table.h"
+#include "reports/text/report_table.h"
 #include "hires/geometry/angles.h"
 #include "lab/src/trial/random_tables.h"
 

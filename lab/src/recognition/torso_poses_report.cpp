@@ -3,10 +3,10 @@
 #include <functional>
 #include <nlohmann/json.hpp>
 
-#include "reports/known_number.h"
+#include "reports/text/known_number.h"
 #include "lab/src/recognition/torso_poses.h"
-#include "reports/report_table.h"
-#include "reports/statistics.h"
+#include "reports/text/report_table.h"
+#include "reports/text/statistics.h"
 
 namespace hires::lab {
 namespace {

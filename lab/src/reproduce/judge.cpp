@@ -7,10 +7,10 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 
-#include "reports/known_number.h"
+#include "reports/text/known_number.h"
 #include "hires/base/error.h"
 #include "hires/base/text.h"
-#include "reports/report_table.h"
+#include "reports/text/report_table.h"
 
 namespace hires::lab {
 namespace {

@@ -9,7 +9,7 @@
 #include "hires/base/error.h"
 #include "hires/base/hash.h"
 #include "hires/base/text.h"
-#include "reports/configuration_hash.h"
+#include "reports/text/configuration_hash.h"
 
 namespace hires::lab {
 namespace {

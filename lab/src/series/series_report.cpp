@@ -9,7 +9,7 @@
 
 #include "hires/base/spelling.h"
 #include "hires/base/text.h"
-#include "reports/report_table.h"
+#include "reports/text/report_table.h"
 
 namespace hires::lab {
 namespace {

@@ -8,7 +8,7 @@
 
 #include "lab/src/series/scenario_series.h"
 #include "lab/src/series/series_run.h"
-#include "reports/statistics.h"
+#include "reports/text/statistics.h"
 
 namespace hires::lab {
 

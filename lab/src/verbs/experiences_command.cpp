@@ -15,7 +15,7 @@
 #include "cli/exit_code.h"
 #include "cli/whole_number.h"
 #include "lab/src/experience/experience_report.h"
-#include "reports/report_json.h"
+#include "reports/text/report_json.h"
 #include "hires/knowledge/experience.h"
 
 namespace hires::lab {

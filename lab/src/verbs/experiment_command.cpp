@@ -17,10 +17,10 @@
 #include "cli/exit_code.h"
 #include "cli/crew_display.h"
 #include "cli/whole_number.h"
-#include "reports/configuration_hash.h"
+#include "reports/text/configuration_hash.h"
 #include "lab/src/experiment/experiment.h"
-#include "reports/report_json.h"
-#include "reports/timeline.h"
+#include "reports/text/report_json.h"
+#include "reports/task/timeline.h"
 #include "hires/knowledge/experience.h"
 
 namespace hires::lab {

@@ -17,10 +17,10 @@
 #include "cli/exit_code.h"
 #include "cli/crew_display.h"
 #include "cli/whole_number.h"
-#include "reports/configuration_hash.h"
+#include "reports/text/configuration_hash.h"
 #include "lab/src/decision/decision_journal.h"
 #include "lab/src/decision/decision_report.h"
-#include "reports/report_json.h"
+#include "reports/text/report_json.h"
 
 namespace hires::lab {
 namespace {

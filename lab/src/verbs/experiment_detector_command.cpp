@@ -14,10 +14,10 @@
 #include "cli/crew_display.h"
 #include "cli/report_output.h"
 #include "cli/whole_number.h"
-#include "reports/configuration_hash.h"
+#include "reports/text/configuration_hash.h"
 #include "lab/src/recognition/detector_fit.h"
-#include "reports/report_json.h"
-#include "reports/timeline.h"
+#include "reports/text/report_json.h"
+#include "reports/task/timeline.h"
 #include "hires/imagination/imagination_setup.h"
 #include "hires/robot/load_robot.h"
 

@@ -11,7 +11,7 @@
 #include "cli/crew_display.h"
 #include "cli/whole_number.h"
 #include "lab/src/ladder/ladder.h"
-#include "reports/report_json.h"
+#include "reports/text/report_json.h"
 #include "loop/task_loop.h"
 
 namespace hires::lab {

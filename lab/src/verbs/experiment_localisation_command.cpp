@@ -9,10 +9,10 @@
 #include "cli/exit_code.h"
 #include "cli/crew_display.h"
 #include "cli/whole_number.h"
-#include "reports/configuration_hash.h"
+#include "reports/text/configuration_hash.h"
 #include "lab/src/place/pose_error_fit.h"
-#include "reports/report_json.h"
-#include "reports/timeline.h"
+#include "reports/text/report_json.h"
+#include "reports/task/timeline.h"
 
 namespace hires::lab {
 

@@ -8,9 +8,9 @@
 #include "cli/exit_code.h"
 #include "cli/crew_display.h"
 #include "cli/whole_number.h"
-#include "reports/configuration_hash.h"
+#include "reports/text/configuration_hash.h"
 #include "lab/src/recognition/torso_poses.h"
-#include "reports/report_json.h"
+#include "reports/text/report_json.h"
 
 namespace hires::lab {
 

@@ -13,7 +13,7 @@
 #include "cli/exit_code.h"
 #include "cli/list_rows.h"
 #include "lab/src/experiment/experiment.h"
-#include "reports/report_json.h"
+#include "reports/text/report_json.h"
 #include "lab/src/series/scenario_series.h"
 
 namespace hires::lab {

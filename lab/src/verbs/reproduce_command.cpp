@@ -21,7 +21,7 @@
 #include "hires/base/text.h"
 #include "cli/exit_code.h"
 #include "cli/crew_display.h"
-#include "reports/report_table.h"
+#include "reports/text/report_table.h"
 #include "lab/src/reproduce/catalogue.h"
 #include "lab/src/reproduce/judge.h"
 

@@ -20,7 +20,7 @@
 #include "cli/exit_code.h"
 #include "cli/crew_display.h"
 #include "cli/whole_number.h"
-#include "reports/report_json.h"
+#include "reports/text/report_json.h"
 #include "lab/src/series/series_report.h"
 #include "hires/knowledge/blackboard_config.h"
 #include "hires/knowledge/store.h"

@@ -10,7 +10,7 @@
 #include "hires/base/hash.h"
 #include "hires/base/run_processes.h"
 #include "hires/base/text.h"
-#include "reports/configuration_hash.h"
+#include "reports/text/configuration_hash.h"
 #include "lab/src/experiment/hypothesis.h"
 #include "sim_robot/scenario.h"
 #include "sim_robot/sim_robot_world.h"

@@ -18,7 +18,7 @@
 #include "nodes/hires/episode_recording.h"
 #include "nodes/hires/imagine_recording.h"
 #include "nodes/hires/remote_imagination.h"
-#include "reports/report_json.h"
+#include "reports/text/report_json.h"
 
 namespace hires_ros {
 namespace {

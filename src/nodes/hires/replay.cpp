@@ -26,8 +26,8 @@
 #include "hires/ros/values/action_messages.h"
 #include "nodes/hires/episode_replay.h"
 #include "nodes/hires/remote_imagination.h"
-#include "reports/report_json.h"
-#include "reports/report_table.h"
+#include "reports/text/report_json.h"
+#include "reports/text/report_table.h"
 
 namespace hires_ros {
 namespace {

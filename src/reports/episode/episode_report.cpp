@@ -5,9 +5,9 @@
 #include <nlohmann/json.hpp>
 
 #include "reports/episode/episode_compare.h"
-#include "reports/report_json.h"
-#include "reports/report_table.h"
-#include "reports/statistics.h"
+#include "reports/text/report_json.h"
+#include "reports/text/report_table.h"
+#include "reports/text/statistics.h"
 
 namespace hires::reports {
 namespace {

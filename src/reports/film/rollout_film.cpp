@@ -16,7 +16,6 @@
 #include "reports/film/film_cameras.h"
 #include "reports/film/picture_files.h"
 #include "reports/film/picture_text.h"
-#include "reports/timeline.h"
 
 namespace hires::reports {
 namespace {

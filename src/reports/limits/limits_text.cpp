@@ -6,7 +6,7 @@
 
 #include "hires/base/hash.h"
 #include "reports/limits/motion_limits.h"
-#include "reports/report_table.h"
+#include "reports/text/report_table.h"
 
 // What was found, for people and for machines.
 namespace hires::reports {

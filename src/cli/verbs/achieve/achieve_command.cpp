@@ -16,9 +16,9 @@
 #include "hires/base/error.h"
 #include "hires/base/process.h"
 #include "hires/base/text.h"
-#include "reports/configuration_hash.h"
-#include "reports/report_json.h"
-#include "reports/timeline.h"
+#include "reports/task/timeline.h"
+#include "reports/text/configuration_hash.h"
+#include "reports/text/report_json.h"
 #include "sim_robot/scenario.h"
 #include "sim_robot/truth.h"
 

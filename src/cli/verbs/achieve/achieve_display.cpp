@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "hires/base/text.h"
-#include "reports/report_table.h"
+#include "reports/text/report_table.h"
 
 namespace hires::cli {
 namespace {

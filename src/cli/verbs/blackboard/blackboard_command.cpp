@@ -12,9 +12,9 @@
 #include "hires/base/text.h"
 #include "hires/knowledge/blackboard_config.h"
 #include "hires/knowledge/episode_diff_report.h"
-#include "reports/report_json.h"
-#include "reports/report_table.h"
-#include "reports/timeline.h"
+#include "reports/task/timeline.h"
+#include "reports/text/report_json.h"
+#include "reports/text/report_table.h"
 
 namespace hires::cli {
 namespace {

@@ -8,7 +8,7 @@
 #include <type_traits>
 
 #include "hires/base/text.h"
-#include "reports/report_table.h"
+#include "reports/text/report_table.h"
 
 namespace hires::cli {
 namespace {

@@ -13,7 +13,7 @@
 #include "hires/base/error.h"
 #include "hires/imagination/client_config.h"
 #include "hires/physics/physics_checks.h"
-#include "reports/report_table.h"
+#include "reports/text/report_table.h"
 
 namespace hires::cli {
 namespace {

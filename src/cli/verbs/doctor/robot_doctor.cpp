@@ -9,7 +9,7 @@
 #include "cli/exit_code.h"
 #include "cli/verbs/doctor/robot_doctor_hosts.h"
 #include "cli/verbs/doctor/robot_doctor_judge.h"
-#include "reports/report_table.h"
+#include "reports/text/report_table.h"
 
 namespace hires::cli {
 namespace {

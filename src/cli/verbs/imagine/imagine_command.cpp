@@ -20,8 +20,8 @@
 #include "hires/base/text.h"
 #include "hires/imagination/client_config.h"
 #include "hires/skills/action_loader.h"
-#include "reports/report_json.h"
-#include "reports/report_table.h"
+#include "reports/text/report_json.h"
+#include "reports/text/report_table.h"
 
 namespace hires::cli {
 namespace {

@@ -13,8 +13,7 @@
 #include "hires/base/text.h"
 #include "hires/imagination/rollout_choice.h"
 #include "reports/film/rollout_film.h"
-#include "reports/report_json.h"
-#include "reports/timeline.h"
+#include "reports/text/report_json.h"
 
 namespace hires::cli {
 namespace {

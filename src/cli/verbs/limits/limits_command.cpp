@@ -17,8 +17,7 @@
 #include "hires/base/text.h"
 #include "hires/imagination/client_config.h"
 #include "reports/limits/motion_limits.h"
-#include "reports/report_json.h"
-#include "reports/timeline.h"
+#include "reports/text/report_json.h"
 
 namespace hires::cli {
 namespace {

@@ -22,7 +22,7 @@
 #include "hires/skills/action_loader.h"
 #include "hires/translation/areas.h"
 #include "hires/world/object_catalogue.h"
-#include "reports/report_json.h"
+#include "reports/text/report_json.h"
 #include "sim_robot/scenario.h"
 
 namespace hires::cli {

@@ -17,7 +17,7 @@
 #include "hires/localisation/localise_log.h"
 #include "hires/localisation/log_file.h"
 #include "hires/world/occupancy_grid.h"
-#include "reports/report_json.h"
+#include "reports/text/report_json.h"
 
 namespace hires::cli {
 namespace {

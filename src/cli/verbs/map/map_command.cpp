@@ -22,7 +22,7 @@
 #include "hires/mapping/map_judge.h"
 #include "hires/mapping/mapper.h"
 #include "hires/simulation/self_localisation.h"
-#include "reports/report_json.h"
+#include "reports/text/report_json.h"
 #include "sim_robot/map_drive.h"
 
 namespace hires::cli {

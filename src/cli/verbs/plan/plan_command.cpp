@@ -22,7 +22,7 @@
 #include "hires/planning/shop2_reader.h"
 #include "hires/planning/task_text.h"
 #include "hires/planning/validator.h"
-#include "reports/report_table.h"
+#include "reports/text/report_table.h"
 
 namespace hires::cli {
 namespace {

@@ -15,8 +15,8 @@
 #include "hires/base/text.h"
 #include "hires/perception/pcd_file.h"
 #include "hires/perception/recogniser_config.h"
-#include "reports/report_json.h"
-#include "reports/report_table.h"
+#include "reports/text/report_json.h"
+#include "reports/text/report_table.h"
 
 namespace hires::cli {
 namespace {

@@ -1,4 +1,4 @@
-#include "reports/statistics.h"
+#include "reports/text/statistics.h"
 
 #include <algorithm>
 #include <boost/math/distributions/binomial.hpp>

@@ -5,9 +5,9 @@
 #include <nlohmann/json.hpp>
 
 #include "hires/base/error.h"
-#include "reports/known_number.h"
-#include "reports/report_json.h"
-#include "reports/timeline.h"
+#include "reports/task/timeline.h"
+#include "reports/text/known_number.h"
+#include "reports/text/report_json.h"
 
 namespace hires::reports {
 namespace {

@@ -1,4 +1,4 @@
-#include "reports/configuration_hash.h"
+#include "reports/text/configuration_hash.h"
 
 #include <fmt/format.h>
 #include <yaml-cpp/yaml.h>

@@ -7,7 +7,7 @@
 #include <optional>
 #include <string>
 
-#include "reports/statistics.h"
+#include "reports/text/statistics.h"
 
 namespace hires::reports {
 
