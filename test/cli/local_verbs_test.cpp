@@ -1,0 +1,82 @@
+#include "cli/local_verbs.h"
+
+#include <gmock/gmock.h>
+
+#include <nlohmann/json.hpp>
+
+#include "cli/command_run.h"
+#include "hires/base/text.h"
+#include "support/temporary_folder.h"
+
+namespace hires::cli::local_verbs_test {
+namespace {
+
+using test_support::Capture;
+using test_support::Ended;
+using test_support::TemporaryFolder;
+using ::testing::HasSubstr;
+using ::testing::Not;
+
+Ended RunLocal(std::vector<std::string> words) {
+  words.insert(words.begin(), "hires_local");
+  return Capture([&] { return RunLocalCommandLine(words, HIRES_SOURCE_DIR); });
+}
+
+TEST(LocalVerbsTest, HelpNamesWhatNeedsNoNodes) {
+  const Ended ended = RunLocal({"--help"});
+  EXPECT_EQ(ended.code, 0);
+  for (const char* verb : {"imagine", "limits", "list", "doctor"}) {
+    EXPECT_THAT(ended.out, HasSubstr(verb));
+  }
+  EXPECT_THAT(ended.out, Not(HasSubstr("achieve")));
+  EXPECT_THAT(RunLocal({"--version"}).out, HasSubstr("hires_local "));
+}
+
+TEST(LocalVerbsTest, ImaginesTheSameAsTheWholeProgram) {
+  const TemporaryFolder folder;
+  const std::string one = (folder.path() / "one.json").string(),
+                    other = (folder.path() / "other.json").string();
+  const std::vector<std::string> question{"imagine",
+                                          "--local",
+                                          "--quiet",
+                                          "--world",
+                                          HIRES_SOURCE_DIR "/worlds/workshop.world",
+                                          "--from",
+                                          "dock",
+                                          "--object",
+                                          "peppermill1",
+                                          "--action",
+                                          "move_base_param",
+                                          "--arg",
+                                          "atBench",
+                                          "--arg",
+                                          "slow,fast",
+                                          "--rollouts",
+                                          "2",
+                                          "--seed",
+                                          "7",
+                                          "--json"};
+  const auto ask = [&](const std::string& file) {
+    std::vector<std::string> words = question;
+    words.push_back(file);
+    return words;
+  };
+  const Ended small = RunLocal(ask(one)), whole = test_support::RunHires(ask(other));
+  EXPECT_EQ(small.code, whole.code);
+  auto a = nlohmann::json::parse(base::ReadTextFile(one)),
+       b = nlohmann::json::parse(base::ReadTextFile(other));
+  for (auto* answer : {&a, &b}) {
+    answer->erase("report");  // program, command, when
+    answer->erase("wall_seconds");
+  }
+  EXPECT_EQ(a, b);
+}
+
+TEST(LocalVerbsTest, AsksNobody) {
+  const Ended ended = RunLocal({"imagine", "--action", "move_base", "--from", "home"});
+  EXPECT_EQ(ended.code, 1);
+  EXPECT_THAT(ended.err, HasSubstr("--local"));
+}
+
+}  // namespace
+}  // namespace hires::cli::local_verbs_test
