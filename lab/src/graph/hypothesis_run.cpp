@@ -21,7 +21,9 @@
 namespace hires_ros {
 namespace {
 
-namespace evaluation = hires::evaluation;
+namespace reports = hires::reports;
+namespace sim_robot = hires::sim_robot;
+namespace lab = hires::lab;
 using lab::HypothesisOrder;
 using lab::HypothesisRun;
 using hires::base::ConfigError;

@@ -18,7 +18,8 @@
 namespace hires_ros {
 namespace {
 
-namespace evaluation = hires::evaluation;
+namespace loop = hires::loop;
+namespace reports = hires::reports;
 using hires::base::ConfigError;
 using nlohmann::ordered_json;
 

@@ -7,7 +7,7 @@
 namespace hires_ros {
 namespace {
 
-namespace evaluation = hires::evaluation;
+namespace loop = hires::loop;
 
 }  // namespace
 

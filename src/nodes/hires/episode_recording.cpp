@@ -21,7 +21,7 @@
 namespace hires_ros {
 namespace {
 
-namespace evaluation = hires::evaluation;
+namespace reports = hires::reports;
 using hires::ExecuteActionResult;
 using reports::ActionFate;
 using reports::EpisodeBuilder;

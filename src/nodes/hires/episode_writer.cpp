@@ -31,7 +31,8 @@
 namespace hires_ros {
 namespace {
 
-namespace evaluation = hires::evaluation;
+namespace loop = hires::loop;
+namespace reports = hires::reports;
 namespace loop = hires::loop;
 using hires::control::ActionEnd;
 

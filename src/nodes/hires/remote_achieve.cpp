@@ -20,7 +20,7 @@
 namespace hires_ros {
 namespace {
 
-namespace evaluation = hires::evaluation;
+namespace loop = hires::loop;
 using AchieveClient = actionlib::SimpleActionClient<hires::AchieveAction>;
 
 constexpr double kStopWait = 60.0;  // [s] for the robot to come to a stand

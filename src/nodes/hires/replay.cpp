@@ -33,7 +33,7 @@ namespace hires_ros {
 namespace {
 
 namespace cli = hires::cli;
-namespace evaluation = hires::evaluation;
+namespace reports = hires::reports;
 namespace imagination = hires::imagination;
 using hires::ImagineGoal;
 using hires::ImagineResult;
