@@ -92,20 +92,21 @@ endfunction()
 add_custom_target(hires_run)
 add_dependencies(hires_run hires_generate_messages_py)
 
-# hires_rostest(<file.test> [TIMEOUT seconds] [BESIDE_OTHERS] [WAITS] [LONG]): a rostest that ctest runs and a
+# hires_rostest(<file.test> [TIMEOUT seconds] [BESIDE_OTHERS] [WAITS] [LONG|NIGHTLY] [SCENARIO]): a rostest that ctest runs and a
 # user can run alone. Nothing else runs meanwhile, as each brings masters and worker processes of its
 # own; BESIDE_OTHERS: it judges no times and takes no fixed ports, so that other tests may run too.
 # WAITS: it takes half a processor at most, for it waits for time-outs and for what a robot does at
 # the pace of time.
-# LONG: only with HIRES_LONG_TESTS, as `scripts/test --long` sets it.
+# LONG: only with HIRES_LONG_TESTS, as `scripts/test --long` sets it; NIGHTLY: only with HIRES_NIGHTLY_TESTS.
+# SCENARIO: of whole tasks, for its label.
 # Not in ${CATKIN_ENV}: that is a snapshot taken while configuring, and in a fresh folder it misses
 # the Python messages built later.
 function(hires_rostest file)
   if(NOT HIRES_TESTS)
     return()
   endif()
-  cmake_parse_arguments(ROSTEST "BESIDE_OTHERS;WAITS;LONG" "TIMEOUT" "ARGS" ${ARGN})
-  if(ROSTEST_LONG AND NOT HIRES_LONG_TESTS)
+  cmake_parse_arguments(ROSTEST "BESIDE_OTHERS;WAITS;LONG;NIGHTLY;SCENARIO" "TIMEOUT" "ARGS" ${ARGN})
+  if((ROSTEST_LONG AND NOT HIRES_LONG_TESTS) OR (ROSTEST_NIGHTLY AND NOT HIRES_NIGHTLY_TESTS))
     return()
   endif()
   if(NOT ROSTEST_TIMEOUT)
@@ -126,7 +127,14 @@ function(hires_rostest file)
   if(ROSTEST_WAITS)
     set(processors 1)
   endif()
-  set_tests_properties(ros.${name} PROPERTIES
+  set(labels node)
+  if(ROSTEST_SCENARIO)
+    set(labels scenario)
+  endif()
+  if(ROSTEST_NIGHTLY)
+    list(APPEND labels nightly)
+  endif()
+  set_tests_properties(ros.${name} PROPERTIES LABELS "${labels}"
     TIMEOUT ${ROSTEST_TIMEOUT} RUN_SERIAL ${alone} PROCESSORS ${processors}
     ENVIRONMENT "ROS_HOSTNAME=localhost;ROS_IP=")
 endfunction()

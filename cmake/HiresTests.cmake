@@ -62,6 +62,9 @@ function(hires_run_tests)
   add_dependencies(run_tests _run_tests_${PROJECT_NAME})
 endfunction()
 
+# Labels of tests (`scripts/test -L unit`): unit, node (one node or launch file, in a graph), scenario (whole
+# tasks), install (as others have it) and nightly (what only `scripts/test --nightly` runs).
+
 # ctest counts half processors (scripts/common.sh, RunTests): a test takes two of them, or one if it
 # waits more than it computes.
 
@@ -96,7 +99,7 @@ function(hires_test layer name)
   if(HIRES_SANITIZE)  # up to ten times slower, and nothing to do with hanging
     math(EXPR TEST_TIMEOUT "10 * ${TEST_TIMEOUT}")
   endif()
-  set_tests_properties(${layer}.${name} PROPERTIES TIMEOUT ${TEST_TIMEOUT} PROCESSORS 2
+  set_tests_properties(${layer}.${name} PROPERTIES TIMEOUT ${TEST_TIMEOUT} PROCESSORS 2 LABELS unit
     FAIL_REGULAR_EXPRESSION "Running 0 tests from 0 test suites")
 endfunction()
 
@@ -166,7 +169,7 @@ function(hires_check_test_programs)
     list(JOIN filters ":" filters)
     string(REGEX REPLACE "^hires_(.*)_test$" "\\1.all_listed" name ${program})
     add_test(NAME ${name} COMMAND ${program} --gtest_filter=*-${filters})
-    set_tests_properties(${name} PROPERTIES TIMEOUT 120
+    set_tests_properties(${name} PROPERTIES LABELS unit TIMEOUT 120
       PASS_REGULAR_EXPRESSION "Running 0 tests from 0 test suites")
   endforeach()
 endfunction()

@@ -3,6 +3,7 @@ add_executable(hires_own_action_test test/turn_towards_test.cpp src/turn_towards
 target_include_directories(hires_own_action_test PRIVATE src)
 target_link_libraries(hires_own_action_test PRIVATE hires_skills GTest::gmock_main)
 add_test(NAME examples.own_action COMMAND hires_own_action_test)
+set_tests_properties(examples.own_action PROPERTIES LABELS unit TIMEOUT 60)
 
 if(HIRES_ROS)
   set(hires $<TARGET_FILE:hires_hires_node>)
@@ -14,7 +15,7 @@ add_test(NAME examples.own_action_planned COMMAND ${says}
   "!turn_towards sittingareawesttable1 fast.*plan 1 is valid" ${hires} plan --validate
   --domain ${CMAKE_CURRENT_SOURCE_DIR}/config/greeting.lisp
   --problem ${CMAKE_CURRENT_SOURCE_DIR}/config/greeting_problem.lisp)
-set_tests_properties(examples.own_action_planned PROPERTIES TIMEOUT 60)
+set_tests_properties(examples.own_action_planned PROPERTIES LABELS unit TIMEOUT 60)
 
 # Without any master: slow and fast are played and ranked.
 set(imagine imagine --local --quiet --seed 7 --rollouts 16
@@ -34,7 +35,7 @@ else()
     --test-command ${hires} ${imagine}
       ${CMAKE_CURRENT_BINARY_DIR}/outside/devel/lib/libown_action.so)
 endif()
-set_tests_properties(examples.own_action_imagined PROPERTIES TIMEOUT 300)
+set_tests_properties(examples.own_action_imagined PROPERTIES LABELS unit TIMEOUT 300)
 
 if(HIRES_ROS)  # the whole of it, executed by a simulated robot
   hires_rostest(../../test/ros/own_action.test TIMEOUT 300 ARGS actions:=$<TARGET_FILE:hires_own_action>)

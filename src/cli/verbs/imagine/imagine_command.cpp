@@ -287,14 +287,6 @@ int ExitCodeOf(const imagination::Report& report) {
   return kExitBadInput;
 }
 
-std::string NameOf(const std::string& object, imagination::SetupConfig* setup) {
-  const bool is_file =
-      object.find('/') != std::string::npos || object.find('.') != std::string::npos;
-  if (!is_file) return object;
-  setup->extra_objects.push_back(object);
-  return world::LoadObjectModel(object).name;
-}
-
 int RunImagineVerb(const ImagineOptions& options, const ImagineBackends& backends,
                    const std::function<bool()>& cancelled) {
   const ImagineQuery query = MakeQuery(options);
