@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "cli/command_line.h"
+#include "cli/exit_code.h"
 
 namespace hires::test_support {
 

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "cli/command_line.h"
+#include "cli/exit_code.h"
 #include "cli/verbs/doctor/robot_doctor_hosts.h"
 #include "cli/verbs/doctor/robot_doctor_judge.h"
 #include "cli/verbs/doctor/robot_doctor_network.h"

@@ -7,7 +7,7 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 
-#include "cli/command_line.h"
+#include "cli/exit_code.h"
 #include "hires/base/error.h"
 #include "hires/imagination/local_setup.h"
 #include "hires/ros/answer/report_messages.h"

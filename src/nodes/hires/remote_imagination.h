@@ -5,7 +5,7 @@
 
 #include <functional>
 
-#include "cli/command_line.h"
+#include "cli/verbs/imagine/imagine_query.h"
 #include "hires/imagination/report.h"
 
 namespace hires_ros {

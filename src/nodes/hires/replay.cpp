@@ -15,7 +15,7 @@
 #include <optional>
 #include <thread>
 
-#include "cli/command_line.h"
+#include "cli/exit_code.h"
 #include "cli/whole_number.h"
 #include "hires/base/error.h"
 #include "hires/base/text.h"

@@ -20,7 +20,7 @@
 #include <optional>
 #include <set>
 
-#include "cli/command_line.h"
+#include "cli/exit_code.h"
 #include "cli/verbs/imagine/playback.h"
 #include "hires/base/error.h"
 #include "hires/base/process.h"
