@@ -54,7 +54,7 @@ void Watch(const HypothesisOrder& order, const sim_robot::Scenario& scenario,
   AwaitTruth(witness, limits);
   const auto report = AchieveRemotely({scenario.task, "", order.goal.start_limit}, {},
                                       [&] { return limits->Broken(); });
-  reports::WriteJson(ToJson(report), order.folder + "/result.json");
+  reports::WriteJson(reports::ToJson(report), order.folder + "/result.json");
   lab::CountReport(report, run);
   AwaitRest(limits);
   lab::Judge(order.goal, places, witness.Truth(), run);

@@ -76,7 +76,7 @@ ordered_json Play(const hires::lab::GraphOrder& order, RunLimits* limits) {
   const auto report = AchieveRemotely({order.run.task, "", limits->start_limit()}, on_status,
                                       [&] { return limits->Broken(); });
   AwaitRest(limits);
-  ordered_json json = ToJson(report);
+  ordered_json json = reports::ToJson(report);
   json["in_truth"] = TruthJson(witness.Truth(), ros::Time::now().toSec());
   if (limits->is_time_over()) {  // what ended the task was this process
     json["outcome"] = loop::ToString(loop::AchieveOutcome::kFailed);
