@@ -10,10 +10,10 @@
 namespace hires::lab::command_line_test {
 namespace {
 
+using test_support::RunLab;
 using ::testing::AllOf;
 using ::testing::HasSubstr;
 using ::testing::Not;
-using test_support::RunLab;
 
 TEST(LabCommandLineTest, HelpNamesTheVerbs) {
   const auto ended = RunLab({"--help"});
@@ -53,7 +53,8 @@ TEST(LabListTest, FilesOfTheLabAreFound) {
   EXPECT_EQ(series[0]["series"], "replace");
   EXPECT_EQ(series[0]["file"], HIRES_SOURCE_DIR "/lab/config/series/replace.yaml");
   EXPECT_EQ(series[0]["combinations"], 9) << "three arrangements, three starts";
-  const auto experiments = nlohmann::json::parse(RunLab({"list", "experiments", "--json", "-"}).out);
+  const auto experiments =
+      nlohmann::json::parse(RunLab({"list", "experiments", "--json", "-"}).out);
   EXPECT_GT(experiments.size(), 10u);
   EXPECT_EQ(RunLab({"list", "worlds"}).code, 1);
 }

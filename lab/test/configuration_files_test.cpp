@@ -31,10 +31,8 @@ const std::map<std::string, Reader>& Readers() {
          overrides.map = "given.yaml";  // some want one; it is opened when it is played
          ReadExperiment(path, overrides);
        }},
-      {"hypothesis.yaml",
-       [](const std::string& path) {
-         for (const char* scenario : {"topple", "serve_coffee"})
-           ReadHypothesisGoal(path, scenario);
+      {"hypothesis.yaml", [](const std::string& path) {
+         for (const char* scenario : {"topple", "serve_coffee"}) ReadHypothesisGoal(path, scenario);
        }}};
   return readers;
 }

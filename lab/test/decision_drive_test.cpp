@@ -11,7 +11,6 @@
 namespace hires::lab::decision_drive_test {
 namespace {
 
-
 const loop::LoopSetup& TheSetup() {
   static const loop::LoopSetup setup(HIRES_SOURCE_DIR "/config/loop.yaml");
   return setup;
@@ -69,8 +68,7 @@ int NumFallen(const std::vector<TruthPlay>& plays) {
 }
 
 double MeanCost(const DecisionTask& task, const std::vector<TruthPlay>& plays) {
-  const auto prices =
-      PricesOf(task, TheSetup().imagination().scheduler.criteria.prices, 1.0);
+  const auto prices = PricesOf(task, TheSetup().imagination().scheduler.criteria.prices, 1.0);
   double sum = 0.0;
   for (const TruthPlay& play : plays) sum += CostOf(play, prices);
   return sum / static_cast<double>(plays.size());

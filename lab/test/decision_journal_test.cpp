@@ -6,11 +6,11 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
-#include "lab/src/decision/decision_record.h"
-#include "lab/test/decision_examples.h"
 #include "hires/base/error.h"
 #include "hires/base/text.h"
 #include "hires/imagination/client_config.h"
+#include "lab/src/decision/decision_record.h"
+#include "lab/test/decision_examples.h"
 #include "support/temporary_folder.h"
 
 namespace hires::lab::decision_journal_test {

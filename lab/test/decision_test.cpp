@@ -6,8 +6,8 @@
 #include <set>
 #include <tuple>
 
-#include "lab/test/decision_examples.h"
 #include "hires/world/fall_code.h"
+#include "lab/test/decision_examples.h"
 
 namespace hires::lab::decision_test {
 namespace {

@@ -7,10 +7,10 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 
-#include "lab/src/recognition/regression.h"
 #include "hires/base/error.h"
 #include "hires/base/text.h"
 #include "hires/robot/load_robot.h"
+#include "lab/src/recognition/regression.h"
 
 namespace hires::lab::detector_fit_test {
 namespace {

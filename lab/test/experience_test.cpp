@@ -4,12 +4,12 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 
+#include "hires/geometry/angles.h"
+#include "lab/src/experience/experience_report.h"
 #include "lab/src/experience/experience_runs.h"
 #include "lab/src/experience/filters.h"
 #include "lab/src/experience/separation.h"
-#include "lab/src/experience/experience_report.h"
 #include "reports/experience/topple_monitor.h"
-#include "hires/geometry/angles.h"
 #include "support/messages.h"
 #include "support/temporary_folder.h"
 

@@ -2,10 +2,10 @@
 
 #include <filesystem>
 
-#include "lab/test/lab_run.h"
-#include "hires/base/text.h"
 #include "cli/exit_code.h"
+#include "hires/base/text.h"
 #include "hires/knowledge/experience.h"
+#include "lab/test/lab_run.h"
 #include "support/temporary_folder.h"
 
 namespace hires::lab::experiences_command_test {

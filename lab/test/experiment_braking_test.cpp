@@ -5,11 +5,11 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
-#include "lab/src/experiment/stage.h"
 #include "hires/base/error.h"
 #include "hires/base/text.h"
 #include "lab/src/experiment/braking.h"
 #include "lab/src/experiment/experiment.h"
+#include "lab/src/experiment/stage.h"
 
 namespace hires::lab::experiment_braking_test {
 namespace {

@@ -9,10 +9,10 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
-#include "lab/test/lab_run.h"
-#include "hires/base/text.h"
 #include "cli/exit_code.h"
+#include "hires/base/text.h"
 #include "hires/knowledge/experience.h"
+#include "lab/test/lab_run.h"
 #include "support/temporary_folder.h"
 
 namespace hires::lab::experiment_command_test {
@@ -24,21 +24,21 @@ using knowledge::ExperienceStore;
 const std::string kRoot = HIRES_SOURCE_DIR;
 
 /// The exit code of `hires_lab experiment` with a file that expects `expectation` of three legs.
-int cli::ExitCode(const std::string& expectation, const std::vector<std::string>& more = {}) {
+int ExitCode(const std::string& expectation, const std::vector<std::string>& more = {}) {
   std::string yaml = base::ReadTextFile(kRoot + "/lab/config/experiments/legs_world.yaml");
   yaml = yaml.substr(0, yaml.find("expect:")) + "expect: [" + expectation + "]\n";
-  yaml.replace(yaml.find("../scene.yaml"), 13, kRoot + "/config/scene.yaml");
+  yaml.replace(yaml.find("../../../config/"), 16, kRoot + "/config/");
   const std::string path = testing::TempDir() + "exit_code.yaml";
   std::ofstream(path) << yaml;
   return RunLab({"experiment", path, "--runs", "1"}, more).code;
 }
 
 TEST(ExperimentCommandTest, ExitsByWhatTheFileExpects) {
-  EXPECT_EQ(cli::ExitCode("{measure: reached, at_least: 1}"), 0);
-  EXPECT_EQ(cli::ExitCode("{measure: reached, at_least: 2}"), 2);
-  EXPECT_EQ(cli::ExitCode("{measure: raeched, at_least: 1}"), 1);
-  EXPECT_EQ(cli::ExitCode("", {"--threads", "0"}), 1);
-  EXPECT_EQ(cli::ExitCode("", {"--json", "/no/such/folder/x.json"}), 1);
+  EXPECT_EQ(ExitCode("{measure: reached, at_least: 1}"), 0);
+  EXPECT_EQ(ExitCode("{measure: reached, at_least: 2}"), 2);
+  EXPECT_EQ(ExitCode("{measure: raeched, at_least: 1}"), 1);
+  EXPECT_EQ(ExitCode("", {"--threads", "0"}), 1);
+  EXPECT_EQ(ExitCode("", {"--json", "/no/such/folder/x.json"}), 1);
 }
 
 TEST(ExperimentCommandTest, SeedsOfAllVerbsAreWholeNumbers) {
@@ -63,7 +63,7 @@ TEST(ExperimentCommandTest, ASingleTableDecidesNoGoalAndThatIsSaid) {
   const hires::test_support::TemporaryFolder folder;
   const std::string json = (folder.path() / "numbers.json").string();
   const auto ended = RunLab({"experiment", "recognition", "--tables", "1", "--quiet", "--clouds",
-                               folder.path().string(), "--json", json});
+                             folder.path().string(), "--json", json});
   EXPECT_EQ(ended.code, 2) << ended.err;
   EXPECT_TRUE(std::filesystem::exists(folder.path() / "table_2000.pcd"));
   EXPECT_THAT(ended.out, testing::HasSubstr("saved to " + json +
@@ -75,7 +75,7 @@ TEST(ExperimentCommandTest, ASingleTableDecidesNoGoalAndThatIsSaid) {
 
 TEST(ExperimentCommandTest, WritesCsvAndJson) {
   const std::string csv = testing::TempDir() + "legs.csv", json = testing::TempDir() + "legs.json";
-  EXPECT_EQ(cli::ExitCode("", {"--csv", csv, "--json", json, "--seed", "5"}), 0);
+  EXPECT_EQ(ExitCode("", {"--csv", csv, "--json", json, "--seed", "5"}), 0);
   EXPECT_THAT(base::ReadTextFile(csv), testing::StartsWith("chain,leg,from,to,start_x"));
   const auto report = nlohmann::json::parse(base::ReadTextFile(json));
   EXPECT_EQ(report["seed"], 5);
@@ -87,11 +87,11 @@ TEST(ExperimentCommandTest, WritesCsvAndJson) {
 
 TEST(ExperimentCommandTest, WritesWhatIsExpectedForBuildServers) {
   const std::string path = testing::TempDir() + "legs.xml";
-  EXPECT_EQ(cli::ExitCode("{measure: reached, at_least: 2}", {"--junit", path}), 2);
+  EXPECT_EQ(ExitCode("{measure: reached, at_least: 2}", {"--junit", path}), 2);
   EXPECT_THAT(base::ReadTextFile(path),
               testing::AllOf(testing::HasSubstr("<testsuite name=\"exit_code\" tests=\"1\""),
                              testing::HasSubstr("found 1\"")));
-  EXPECT_EQ(cli::ExitCode("", {"--junit", "/no/such/folder/x.xml"}), 1);
+  EXPECT_EQ(ExitCode("", {"--junit", "/no/such/folder/x.xml"}), 1);
 }
 
 /// A loop of some drives, and experiences of a play before it.
@@ -103,7 +103,7 @@ class ExperiencesOfALoopTest : public ::testing::Test {
     const auto replace = [&](const std::string& what, const std::string& by) {
       yaml.replace(yaml.find(what), what.size(), by);
     };
-    replace("../scene.yaml", kRoot + "/config/scene.yaml");
+    replace("../../../config/", kRoot + "/config/");
     replace("duration: 18000.0", "duration: 10.0");
     words_ = {
         "experiment", folder_.Write("loop.yaml", yaml), "--runs", "2", "--quiet", "--experiences",
@@ -150,9 +150,10 @@ TEST(ExperimentCommandTest, AFileOfThePackageIsFoundByItsName) {
   EXPECT_EQ(
       ended.out,
       RunLab({"experiment", kRoot + "/lab/config/experiments/legs_world.yaml", "--hashes"}).out);
-  EXPECT_THAT(RunLab({"experiment", "paird"}).err,
-              testing::HasSubstr("lab/config/experiments: experiment 'paird' is unknown; did you mean "
-                                 "'paired'?; or give a path"));
+  EXPECT_THAT(
+      RunLab({"experiment", "paird"}).err,
+      testing::HasSubstr("lab/config/experiments: experiment 'paird' is unknown; did you mean "
+                         "'paired'?; or give a path"));
   EXPECT_THAT(RunLab({"experiment", "none.yaml"}).err,
               testing::HasSubstr("none.yaml: no such file"));
   EXPECT_THAT(RunLab({"experiment"}).err,

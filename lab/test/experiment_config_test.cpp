@@ -7,9 +7,9 @@
 
 #include "hires/base/error.h"
 #include "hires/base/text.h"
-#include "lab/src/experiment/experiment.h"
 #include "hires/imagination/imagination_setup.h"
 #include "hires/world/world.h"
+#include "lab/src/experiment/experiment.h"
 #include "support/temporary_folder.h"
 
 namespace hires::lab::experiment_config_test {
@@ -166,7 +166,7 @@ TEST(ExperimentConfigTest, AFileThatIsMissingIsNamed) {
 TEST(ExperimentConfigTest, TheObstacleLayerIsTheScenesNoneOrAFile) {
   const hires::test_support::TemporaryFolder folder;
   std::string legs = base::ReadTextFile(kFolder + "legs_world.yaml");
-  const std::string scene = "../scene.yaml";
+  const std::string scene = "../../../config/scene.yaml";
   legs.replace(legs.find(scene), scene.size(), fs::path(kFolder + scene).lexically_normal());
   const auto layer_of = [&](const std::string& more) {
     return ReadExperiment(folder.Write("legs.yaml", legs + more)).obstacle_layer;

@@ -2,9 +2,9 @@
 
 #include <nlohmann/json.hpp>
 
-#include "lab/test/lab_run.h"
-#include "hires/base/text.h"
 #include "cli/exit_code.h"
+#include "hires/base/text.h"
+#include "lab/test/lab_run.h"
 #include "support/temporary_folder.h"
 
 namespace hires::lab::experiment_decision_command_test {

@@ -5,10 +5,10 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
-#include "lab/test/lab_run.h"
-#include "lab/test/hypothesis_examples.h"
-#include "hires/base/text.h"
 #include "cli/exit_code.h"
+#include "hires/base/text.h"
+#include "lab/test/hypothesis_examples.h"
+#include "lab/test/lab_run.h"
 #include "support/temporary_folder.h"
 
 namespace hires::lab::experiment_hypothesis_command_test {
@@ -36,8 +36,7 @@ class FakePlayer {
   std::optional<HypothesisRun> operator()(const HypothesisOrder& order) {
     if (static_cast<int>(orders.size()) == stop_after) return std::nullopt;
     orders.push_back(order);
-    HypothesisRun run =
-        RecordOf(0, false, order.imagines || order.run % 2 == 1);
+    HypothesisRun run = RecordOf(0, false, order.imagines || order.run % 2 == 1);
     if (order.run == dies_in) {
       run = {};
       run.outcome = "system_died";

@@ -3,9 +3,9 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
-#include "lab/test/hypothesis_examples.h"
 #include "hires/base/text.h"
 #include "lab/src/experiment/hypothesis_journal.h"
+#include "lab/test/hypothesis_examples.h"
 #include "support/temporary_folder.h"
 
 namespace hires::lab::experiment_hypothesis_journal_test {

@@ -3,11 +3,11 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "lab/test/hypothesis_examples.h"
 #include "hires/base/text.h"
-#include "lab/src/experiment/hypothesis.h"
-#include "sim_robot/scenario.h"
 #include "hires/imagination/imagination_setup.h"
+#include "lab/src/experiment/hypothesis.h"
+#include "lab/test/hypothesis_examples.h"
+#include "sim_robot/scenario.h"
 #include "support/temporary_folder.h"
 
 namespace hires::lab::experiment_hypothesis_test {

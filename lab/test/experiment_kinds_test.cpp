@@ -216,7 +216,8 @@ TEST(ToppleLoopTest, EqualRoundsLeaveNoDoubtThoughTheirLegsDiffer) {
   EXPECT_EQ(ValueOf(findings, "independent_parts_fast"), 20.0);
   EXPECT_EQ(ValueOf(findings, "independent_parts_slow"), 8.0);
   for (const char* suffix : {"", "_10hz"}) {
-    const reports::Interval share = IntervalOf(findings, std::string("shaking_share_fast") + suffix);
+    const reports::Interval share =
+        IntervalOf(findings, std::string("shaking_share_fast") + suffix);
     EXPECT_EQ(share.estimate, 0.1);
     EXPECT_EQ(share.lower, 0.1);
     EXPECT_EQ(share.upper, 0.1);
@@ -236,11 +237,12 @@ TEST(ToppleLoopTest, OfManyRoundsIntervalsAreTheNormalOnes) {
                          slow = DrawnCounts(kRounds, 21, base::Rng(4));
   const Findings findings = SumUpToppleLoop(Loop(), 1, {{Rounds(fast)}, {Rounds(slow)}});
   const reports::Interval fast_mean = reports::MeanInterval(ShakingSharesOf(fast)),
-                 slow_mean = reports::MeanInterval(ShakingSharesOf(slow));
+                          slow_mean = reports::MeanInterval(ShakingSharesOf(slow));
   for (const char* suffix : {"", "_10hz"}) {
     // An end is off by 0.06 standard errors, which is what 2000 resamples are worth. Single legs as
     // parts would give half as much again.
-    const reports::Interval share = IntervalOf(findings, std::string("shaking_share_fast") + suffix);
+    const reports::Interval share =
+        IntervalOf(findings, std::string("shaking_share_fast") + suffix);
     const double error = Width(fast_mean) / 2.0 / 1.96;
     EXPECT_NEAR(share.estimate, fast_mean.estimate, 1e-12);
     EXPECT_NEAR(share.lower, fast_mean.lower, 0.25 * error);

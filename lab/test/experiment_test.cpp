@@ -8,10 +8,10 @@
 #include <nlohmann/json.hpp>
 #include <numeric>
 
-#include "lab/src/experiment/chain.h"
 #include "hires/base/error.h"
 #include "hires/base/text.h"
 #include "hires/geometry/angles.h"
+#include "lab/src/experiment/chain.h"
 
 namespace hires::lab::experiment_test {
 namespace {

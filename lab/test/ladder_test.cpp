@@ -8,10 +8,10 @@
 #include <map>
 #include <nlohmann/json.hpp>
 
+#include "hires/geometry/angles.h"
 #include "lab/src/ladder/measure.h"
 #include "lab/src/ladder/other_worlds.h"
 #include "lab/src/ladder/rungs.h"
-#include "hires/geometry/angles.h"
 #include "support/messages.h"
 
 namespace hires::lab::ladder_test {

@@ -6,12 +6,12 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "lab/src/experiment/chain.h"
-#include "lab/src/experiment/braking.h"
-#include "lab/src/experiment/experiment.h"
 #include "hires/imagination/rollout.h"
 #include "hires/simulation/truth_record.h"
 #include "hires/translation/classification.h"
+#include "lab/src/experiment/braking.h"
+#include "lab/src/experiment/chain.h"
+#include "lab/src/experiment/experiment.h"
 #include "support/scene_copy.h"
 
 namespace hires::lab::one_criterion_test {

@@ -9,10 +9,10 @@
 
 #include "hires/base/error.h"
 #include "hires/geometry/angles.h"
-#include "lab/src/trial/random_tables.h"
-#include "lab/src/trial/recognition_score.h"
 #include "hires/robot/load_robot.h"
 #include "hires/world/world.h"
+#include "lab/src/trial/random_tables.h"
+#include "lab/src/trial/recognition_score.h"
 #include "perception/recognition/cloud_picture.h"
 #include "perception/recognition/distance_field.h"
 #include "perception/recognition/model_fit.h"

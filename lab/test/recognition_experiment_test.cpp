@@ -6,10 +6,10 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 
-#include "lab/src/recognition/recognition_goals.h"
 #include "hires/base/error.h"
-#include "lab/src/recognition/torso_poses.h"
 #include "hires/robot/load_robot.h"
+#include "lab/src/recognition/recognition_goals.h"
+#include "lab/src/recognition/torso_poses.h"
 
 namespace hires::lab::recognition_experiment_test {
 namespace {

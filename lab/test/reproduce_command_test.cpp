@@ -3,11 +3,11 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
-#include "lab/test/lab_run.h"
-#include "lab/src/reproduce/play_runner.h"
-#include "lab/src/reproduce/play_store.h"
 #include "hires/base/files/writer_lock.h"
 #include "hires/base/text.h"
+#include "lab/src/reproduce/play_runner.h"
+#include "lab/src/reproduce/play_store.h"
+#include "lab/test/lab_run.h"
 #include "support/messages.h"
 #include "support/temporary_folder.h"
 

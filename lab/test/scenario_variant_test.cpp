@@ -6,9 +6,9 @@
 #include <cmath>
 
 #include "hires/base/text.h"
-#include "sim_robot/scenario.h"
 #include "hires/knowledge/fluent_yaml.h"
 #include "hires/world/world.h"
+#include "sim_robot/scenario.h"
 #include "support/messages.h"
 #include "support/temporary_folder.h"
 
@@ -71,9 +71,9 @@ class ScenarioVariantTest : public ::testing::Test {
                      const std::string& world = kRoot + "/worlds/restaurant.world") {
     const ScenarioSeries read = ReadScenarioSeries(folder_.Write("some.yaml", series));
     const std::vector<int> choices(read.groups.size(), 0);
-    return WriteVariant(
-        read, choices,
-        {sim_robot::ScenarioPath(scenario, kRoot + "/config/scenarios"), "", world, folder_.path().string()});
+    return WriteVariant(read, choices,
+                        {sim_robot::ScenarioPath(scenario, kRoot + "/config/scenarios"), "", world,
+                         folder_.path().string()});
   }
   std::string ErrorOf(const std::string& series, const std::string& scenario = "serve_coffee",
                       const std::string& world = kRoot + "/worlds/restaurant.world") {
@@ -132,7 +132,8 @@ TEST_F(ScenarioVariantTest, NothingMovedIsTheSameWorld) {
   const VariantFiles files = Write(Move("poseTable1", "[]"));
   EXPECT_EQ(world::LoadWorld(files.world).hash,
             world::LoadWorld(kRoot + "/worlds/restaurant.world").hash);
-  const sim_robot::Scenario original = sim_robot::ReadScenario(kRoot + "/config/scenarios/serve_coffee.yaml");
+  const sim_robot::Scenario original =
+      sim_robot::ReadScenario(kRoot + "/config/scenarios/serve_coffee.yaml");
   const sim_robot::Scenario written = sim_robot::ReadScenario(files.scenario);
   EXPECT_EQ(written.task, original.task);
   EXPECT_EQ(written.arms, original.arms);

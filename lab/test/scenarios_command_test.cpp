@@ -11,11 +11,11 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
-#include "lab/test/lab_run.h"
 #include "hires/base/process.h"
 #include "hires/base/text.h"
 #include "hires/knowledge/blackboard_config.h"
 #include "hires/knowledge/store.h"
+#include "lab/test/lab_run.h"
 #include "support/messages.h"
 #include "support/temporary_folder.h"
 

@@ -76,14 +76,16 @@ const std::map<std::string, Reader>& Readers() {
        }},
       {"base_guard.yaml", [](const std::string& path) { navigation::ReadBaseGuardParams(path); }},
       {"scenarios", [](const std::string& path) { sim_robot::ReadScenario(path); }},
-      {"episode.yaml", [](const std::string& path) { ReadEpisodeConfig(path); }},
+      {"episode.yaml", [](const std::string& path) { reports::ReadEpisodeConfig(path); }},
       {"recogniser.yaml", [](const std::string& path) { perception::ReadRecogniserConfig(path); }},
       {"heat_reader.yaml",
        [](const std::string& path) {
          perception::ReadWarmParams(base::ParamReader::FromFile(path));
        }},
       {"topple_monitor.yaml",
-       [](const std::string& path) { ReadToppleMonitorConfig(base::ParamReader::FromFile(path)); }},
+       [](const std::string& path) {
+         reports::ReadToppleMonitorConfig(base::ParamReader::FromFile(path));
+       }},
       {"localisation.yaml",
        [](const std::string& path) {
          localisation::ReadLocalisationConfig(base::ParamReader::FromFile(path));

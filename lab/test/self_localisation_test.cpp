@@ -16,11 +16,15 @@
 #include "support/scenes.h"
 #include "support/temporary_folder.h"
 
-namespace hires::sim_robot::self_localisation_test {
+namespace hires::lab::self_localisation_test {
 namespace {
 
 using geometry::Pose2;
 using hires::test_support::ConfigErrorOf;
+using sim_robot::Localisation;
+using sim_robot::SimRobotWorld;
+using sim_robot::Truth;
+using sim_robot::WithoutPlace;
 using simulation::SelfLocalisationParams;
 using ::testing::AllOf;
 using ::testing::HasSubstr;
@@ -361,4 +365,4 @@ TEST_F(SelfLocalisationFileTest, ATruthThatFiltersNamesTheFile) {
 }
 
 }  // namespace
-}  // namespace hires::sim_robot::self_localisation_test
+}  // namespace hires::lab::self_localisation_test
