@@ -22,6 +22,7 @@ namespace {
 using geometry::Pose2;
 using hires::test_support::ConfigErrorOf;
 using sim_robot::Localisation;
+using sim_robot::SensorReadings;
 using sim_robot::SimRobotWorld;
 using sim_robot::Truth;
 using sim_robot::WithoutPlace;
