@@ -84,7 +84,7 @@ Course DriveInCircles(double seconds, SimRobotWorld* world) {
     robot::Command command;
     command.base_velocity = geometry::Twist2{0.3, 0.0, 0.4};
     world->Apply(command);
-    world->Advance(kSensorTick);
+    world->Advance(sim_robot::kSensorTick);
     course.told.push_back(world->Sense());
     const Pose2& X_MB = world->simulator().base().X_MB;
     const SensorReadings& told = course.told.back();
@@ -267,7 +267,7 @@ TEST(WithoutPlaceTest, OneThatIsCarriedMeasuresNothingOfIt) {
   SimRobotWorld world(SetupOfRoom(), Start(), 3, TruthWithoutPlace());
   const SensorReadings before = DriveInCircles(2.0, &world).told.back();
   ASSERT_EQ(world.Push({0.3, 0.0, 1.0}), "");
-  world.Advance(kJointTick);
+  world.Advance(sim_robot::kJointTick);
   const SensorReadings after = world.Sense();
   EXPECT_LT(Apart(after.odometry.X_OB, before.odometry.X_OB), 0.01);
   EXPECT_NEAR(after.inertia->yaw, before.inertia->yaw, 0.01);
@@ -358,9 +358,9 @@ TEST_F(SelfLocalisationFileTest, ATruthThatFiltersNamesTheFile) {
   const std::string from = "localisation: fitted";
   text.replace(text.find(from), from.size(), "localisation: filter");
   const std::string path = folder_.Write("truth.yaml", text);
-  EXPECT_THAT(ConfigErrorOf([&] { ReadTruth(path); }), HasSubstr("self_localisation"));
+  EXPECT_THAT(ConfigErrorOf([&] { sim_robot::ReadTruth(path); }), HasSubstr("self_localisation"));
   folder_.Write("truth.yaml", text + "self_localisation: " + kConfig + "/self_localisation.yaml\n");
-  const Truth truth = ReadTruth(path);
+  const Truth truth = sim_robot::ReadTruth(path);
   EXPECT_EQ(truth.localisation, Localisation::kFilter);
   EXPECT_EQ(truth.self_localisation->casters.casters_B.size(), 4U);
 }
