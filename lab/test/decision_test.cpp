@@ -17,7 +17,7 @@ using testing::ElementsAre;
 using testing::IsEmpty;
 using world::Fall;
 
-const std::string kConfig = HIRES_SOURCE_DIR "/config/";
+const std::string kConfig = HIRES_SOURCE_DIR "/lab/config/";
 
 DecisionConfig Configured() { return ReadDecisionConfig(kConfig + "decision.yaml"); }
 

@@ -91,7 +91,7 @@ TEST(PoseErrorFitTest, TooFewCorrectionsAreRefused) {
 ExperimentConfig Drives(const std::string& name, int legs) {
   ExperimentOverrides overrides;
   overrides.runs = legs;
-  return ReadExperiment(kConfig + "/experiments/" + name, overrides);
+  return ReadExperiment(HIRES_SOURCE_DIR "/lab/config/experiments/" + name, overrides);
 }
 
 TEST(PoseErrorExperimentTest, IsOfARobotThatFindsItsPlace) {

@@ -289,7 +289,7 @@ std::map<std::string, double> MeasuresOf(const std::string& experiment, int legs
   ExperimentOverrides overrides;
   overrides.runs = legs;
   const auto report =
-      RunExperiment(ReadExperiment(kConfig + "/experiments/" + experiment, overrides), {});
+      RunExperiment(ReadExperiment(HIRES_SOURCE_DIR "/lab/config/experiments/" + experiment, overrides), {});
   std::map<std::string, double> measures;
   for (const Measure& measure : report.value().findings.measures)
     measures[measure.name] = measure.value;

@@ -20,7 +20,6 @@ class ConfigurationHashTest : public ::testing::Test {
  protected:
   ConfigurationHashTest() {
     Write("config/scene.yaml", "world: a.world\nspeed: 1\n");
-    Write("lab/config/experiments/legs.yaml", "legs: 100\n");
     Write("worlds/a.world", "<sdf/>");
     Write("urdf/pr2.urdf", "<robot/>");
     before_ = ConfigurationHash(folder_.path());
@@ -60,12 +59,19 @@ TEST_F(ConfigurationHashTest, CommentsOfYamlCountForNothing) {
   EXPECT_EQ(Now(), before_);
 }
 
-TEST_F(ConfigurationHashTest, WhatSaysOnlyWhichRunsArePlayedOrHowTheyAreShownCountsForNothing) {
-  Write("lab/config/experiments/legs.yaml", "legs: 400\n");
-  Write("lab/config/reproduce.yaml", "plays: []\n");
+TEST_F(ConfigurationHashTest, WhatSaysOnlyHowThingsAreShownOrStartedCountsForNothing) {
   Write("config/topple.rviz", "x: 1\n");
   Write("config/machines.launch", "<launch/>\n");
   EXPECT_EQ(Now(), before_);
+}
+
+TEST_F(ConfigurationHashTest, AnInputMayLeaveNamesOut) {
+  const auto hash = [&] { return InputHash(folder_.path(), "config", {"config/plays"}); };
+  const std::string before = hash();
+  Write("config/plays_of_today.yaml", "plays: []\n");
+  EXPECT_EQ(hash(), before);
+  Write("config/more.yaml", "plays: []\n");
+  EXPECT_NE(hash(), before);
 }
 
 TEST_F(ConfigurationHashTest, DocumentsOfOneFileAreToldApart) {

@@ -52,7 +52,8 @@ std::string PlayStore::KeyOf(const Play& play) {
 std::string PlayStore::HashOfInput(const std::string& input) {
   const auto known = inputs_.find(input);
   if (known != inputs_.end()) return known->second;
-  return inputs_[input] = reports::InputHash(place_.package, input);
+  // Catalogues rest on results, and not the reverse.
+  return inputs_[input] = reports::InputHash(place_.package, input, {"lab/config/reproduce"});
 }
 
 std::string PlayStore::FolderOf(const Play& play) {

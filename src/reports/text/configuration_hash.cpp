@@ -16,24 +16,24 @@ namespace {
 
 namespace fs = std::filesystem;
 
-bool StartsWith(const fs::path& name, const char* start) {
-  return name.string().rfind(start, 0) == 0;
-}
-
-/// Whether a result may rest on it: not how it is shown, nor catalogues, which rest on results.
-bool Counts(const fs::path& name) {
-  return !StartsWith(name, "config/reproduce") && name.extension() != ".rviz" &&
-         name.extension() != ".launch";
+/// Whether a result may rest on it: not how it is shown.
+bool Counts(const fs::path& name, const std::vector<std::string>& without) {
+  const auto begins_name = [&](const std::string& start) {
+    return name.string().rfind(start, 0) == 0;
+  };
+  return name.extension() != ".rviz" && name.extension() != ".launch" &&
+         std::none_of(without.begin(), without.end(), begins_name);
 }
 
 /// Of a file or of all below a folder, those that count, from the package's folder on; sorted.
-std::vector<fs::path> FilesOf(const fs::path& package, const std::string& input) {
+std::vector<fs::path> FilesOf(const fs::path& package, const std::string& input,
+                              const std::vector<std::string>& without = {}) {
   if (!fs::is_directory(package / input)) return {input};
   std::vector<fs::path> names;
   for (const auto& entry : fs::recursive_directory_iterator(package / input)) {
     const fs::path name =
         entry.path().lexically_normal().lexically_relative(package.lexically_normal());
-    if (entry.is_regular_file() && Counts(name)) names.push_back(name);
+    if (entry.is_regular_file() && Counts(name, without)) names.push_back(name);
   }
   std::sort(names.begin(), names.end());
   return names;
@@ -67,16 +67,17 @@ void Add(const fs::path& package, const fs::path& name, base::Hasher* hasher) {
 std::string ConfigurationHash(const std::string& package_folder) {
   base::Hasher hasher;
   for (const char* folder : {"config", "urdf", "worlds"}) {
-    for (const fs::path& name : FilesOf(package_folder, folder)) {
-      if (!StartsWith(name, "lab/config/experiments/")) Add(package_folder, name, &hasher);
-    }
+    for (const fs::path& name : FilesOf(package_folder, folder)) Add(package_folder, name, &hasher);
   }
   return base::HexOf(hasher.value());
 }
 
-std::string InputHash(const std::string& package_folder, const std::string& input) {
+std::string InputHash(const std::string& package_folder, const std::string& input,
+                      const std::vector<std::string>& without) {
   base::Hasher hasher;
-  for (const fs::path& name : FilesOf(package_folder, input)) Add(package_folder, name, &hasher);
+  for (const fs::path& name : FilesOf(package_folder, input, without)) {
+    Add(package_folder, name, &hasher);
+  }
   return base::HexOf(hasher.value());
 }
 
