@@ -17,9 +17,11 @@ using testing::ElementsAre;
 using testing::IsEmpty;
 using world::Fall;
 
-const std::string kConfig = HIRES_SOURCE_DIR "/lab/config/";
+const std::string kConfig = HIRES_SOURCE_DIR "/config/";
 
-DecisionConfig Configured() { return ReadDecisionConfig(kConfig + "decision.yaml"); }
+DecisionConfig Configured() {
+  return ReadDecisionConfig(HIRES_SOURCE_DIR "/lab/config/decision.yaml");
+}
 
 const imagination::ImaginationSetup& TheSetup() {
   static const imagination::ImaginationSetup setup =
