@@ -6,11 +6,10 @@
 #include <exception>
 #include <map>
 #include <optional>
-#include <thread>
 #include <variant>
-#include <vector>
 
 #include "hires/base/mailbox.h"
+#include "hires/base/thread_pool.h"
 
 namespace hires::base {
 namespace {
@@ -31,15 +30,15 @@ using Event = std::variant<Advanced, TaskFailed, ThreadEnded>;
 class Team {
  public:
   Team(int num_tasks, const Crew& crew, const std::function<void(int, const Advance&)>& work)
-      : num_tasks_(num_tasks), crew_(crew), work_(work) {
-    const int size = std::clamp(crew.threads, 1, std::max(1, num_tasks));
-    for (int i = 0; i < size; ++i) threads_.emplace_back([this] { Run(); });
-  }
-  ~Team() {
-    for (std::thread& thread : threads_) thread.join();
+      : num_tasks_(num_tasks),
+        size_(std::clamp(crew.threads, 1, std::max(1, num_tasks))),
+        crew_(crew),
+        work_(work),
+        threads_(size_) {
+    for (int i = 0; i < size_; ++i) threads_.Post([this] { Run(); });
   }
 
-  int size() const { return static_cast<int>(threads_.size()); }
+  int size() const { return size_; }
   Mailbox<Event>& events() { return events_; }
 
  private:
@@ -60,13 +59,13 @@ class Team {
     }
   }
 
-  const int num_tasks_;
+  const int num_tasks_, size_;
   const Crew& crew_;
   const std::function<void(int, const Advance&)>& work_;
   Mailbox<Event> events_;
   std::atomic<int> next_{0};
   std::atomic<bool> has_failed_{false};
-  std::vector<std::thread> threads_;  // last: starts when all else is ready
+  ThreadPool threads_;  // last: it uses the others
 };
 
 /// The owner of what is known about the progress; lives on the calling thread.

@@ -4,9 +4,9 @@
 #include <chrono>
 #include <exception>
 #include <memory>
-#include <thread>
 
 #include "hires/base/mailbox.h"
+#include "hires/base/thread_pool.h"
 
 namespace hires::imagination {
 namespace {
@@ -21,26 +21,20 @@ double SteadySeconds() {
 class LocalWorker {
  public:
   LocalWorker(int id, const PlayOne& play, base::Mailbox<Event>* events)
-      : id_(id), play_(play), events_(*events), thread_([this] { Run(); }) {}
+      : id_(id), play_(play), events_(*events) {}
+  ~LocalWorker() { stop_ = true; }
 
-  ~LocalWorker() {
-    stop_ = true;
-    thread_.join();
+  void Post(const Assign& assign) {
+    thread_.Post([this, assign] { CarryOut(assign); });
   }
-
-  void Post(const Assign& assign) { inbox_.Post(assign); }
   void Cancel(int assignment) { cancelled_up_to_ = assignment; }
 
  private:
-  void Run() {
-    while (!stop_) {
-      const auto assign = inbox_.WaitAndTake(std::chrono::milliseconds(20));
-      if (!assign) continue;
-      try {
-        Play(*assign);
-      } catch (const std::exception& error) {
-        events_.Post(AssignmentFailed{id_, assign->assignment, error.what(), false});
-      }
+  void CarryOut(const Assign& assign) {
+    try {
+      Play(assign);
+    } catch (const std::exception& error) {
+      events_.Post(AssignmentFailed{id_, assign.assignment, error.what(), false});
     }
   }
 
@@ -59,10 +53,9 @@ class LocalWorker {
   const int id_;
   const PlayOne& play_;
   base::Mailbox<Event>& events_;
-  base::Mailbox<Assign> inbox_;
   std::atomic<bool> stop_{false};
   std::atomic<int> cancelled_up_to_{-1};
-  std::thread thread_;  // last: starts when all else is ready
+  base::ThreadPool thread_{1};  // last: it uses the others
 };
 
 }  // namespace

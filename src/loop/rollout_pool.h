@@ -1,26 +1,20 @@
 #pragma once
 
 #include <atomic>
-#include <condition_variable>
-#include <deque>
 #include <future>
 #include <memory>
-#include <mutex>
-#include <thread>
-#include <vector>
 
+#include "hires/base/thread_pool.h"
 #include "hires/imagination/rollout.h"
 
 namespace hires::loop {
 
-/// Threads that play rollouts in the order in which they were asked for.
+/// Threads that play rollouts in the order in which they were asked for. What was not begun when it
+/// ends is not played.
 class RolloutPool {
  public:
   using Result = std::shared_future<imagination::RolloutResult>;
-  explicit RolloutPool(int num_threads);
-  ~RolloutPool();  ///< what was not begun is not played
-  RolloutPool(const RolloutPool&) = delete;
-  RolloutPool& operator=(const RolloutPool&) = delete;
+  explicit RolloutPool(int num_threads) : threads_(num_threads) {}
 
   /// @param unwanted  asked while it is played; then the result is not valid and nobody may wait
   /// for it.
@@ -29,13 +23,7 @@ class RolloutPool {
               std::shared_ptr<const std::atomic<bool>> unwanted);
 
  private:
-  void Run();
-
-  std::mutex mutex_;
-  std::condition_variable changed_;
-  std::deque<std::packaged_task<imagination::RolloutResult()>> waiting_;  // guarded
-  bool is_ending_{false};                                                 // guarded
-  std::vector<std::thread> threads_;
+  base::ThreadPool threads_;
 };
 
 }  // namespace hires::loop

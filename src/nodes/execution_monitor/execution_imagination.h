@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-#include "hires/base/work_thread.h"
+#include "hires/base/thread_pool.h"
 #include "hires/execution/monitor_config.h"
 #include "hires/ros/node/service_links.h"
 #include "nodes/execution_monitor/action_link.h"
@@ -85,7 +85,7 @@ class ImagineRequests {
   int next_key_{1};
   ActionLink<hires::ImagineAction> link_;
   std::shared_ptr<TranslatorState> translator_state_;
-  hires::base::WorkThread translator_;
+  hires::base::ThreadPool translator_;
 };
 
 }  // namespace hires_ros

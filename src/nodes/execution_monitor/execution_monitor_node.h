@@ -20,7 +20,7 @@
 #include <vector>
 
 #include "hires/base/mailbox.h"
-#include "hires/base/work_thread.h"
+#include "hires/base/thread_pool.h"
 #include "hires/execution/monitor_config.h"
 #include "hires/execution/reaction_times.h"
 #include "hires/knowledge/pose_watch.h"
@@ -151,7 +151,7 @@ class ExecutionMonitorNode {
   ImagineRequests imagination_;
   ActionLink<hires::ExecuteActionAction> steps_;
   RemoteView view_;
-  hires::base::WorkThread catcher_;  // asks the Blackboard, which may take its time
+  hires::base::ThreadPool catcher_;  // asks the Blackboard, which may take its time
   diagnostic_updater::Updater updater_;
   ros::Subscriber progress_subscriber_;
   ClientWatch client_watch_;

@@ -5,7 +5,7 @@
 #include <functional>
 #include <map>
 
-#include "hires/base/work_thread.h"
+#include "hires/base/thread_pool.h"
 #include "hires/execution/monitor.h"
 #include "hires/planning/planner_config.h"
 #include "nodes/execution_monitor/action_link.h"
@@ -46,7 +46,7 @@ class PlanRequests {
   std::map<int, Request> requests_;
   int next_key_{1};
   ActionLink<hires::PlanAction> link_;
-  hires::base::WorkThread reader_;
+  hires::base::ThreadPool reader_;
 };
 
 }  // namespace hires_ros

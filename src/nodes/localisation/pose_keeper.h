@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "hires/base/work_thread.h"
+#include "hires/base/thread_pool.h"
 #include "hires/geometry/pose.h"
 
 namespace hires_ros {
@@ -51,7 +51,7 @@ class PoseKeeper {
 
   ros::NodeHandle node_;
   std::optional<double> kept_;      // [s] of the last place
-  hires::base::WorkThread thread_;  // last: it uses the others
+  hires::base::ThreadPool thread_;  // last: it uses the others
 };
 
 }  // namespace hires_ros

@@ -7,19 +7,13 @@
 namespace hires_ros {
 
 PlanPool::PlanPool(int num_threads, Answer answer, hires::base::Mailbox<PlanAnswered>* answered)
-    : answer_(std::move(answer)), answered_(answered) {
-  for (int i = 0; i < num_threads; ++i) threads_.emplace_back([this] { Run(); });
-}
+    : answer_(std::move(answer)), answered_(answered), threads_(num_threads) {}
 
 PlanPool::~PlanPool() {
-  {
-    const std::lock_guard<std::mutex> lock(mutex_);
-    is_ending_ = true;
-    waiting_.clear();
-    for (const auto& job : running_) job->is_cancelled = true;
-  }
-  changed_.notify_all();
-  for (std::thread& thread : threads_) thread.join();
+  const std::lock_guard<std::mutex> lock(mutex_);
+  is_ending_ = true;
+  waiting_.clear();
+  for (const auto& job : running_) job->is_cancelled = true;
 }
 
 void PlanPool::Submit(std::shared_ptr<PlanJob> job) {
@@ -27,7 +21,7 @@ void PlanPool::Submit(std::shared_ptr<PlanJob> job) {
     const std::lock_guard<std::mutex> lock(mutex_);
     waiting_.push_back(std::move(job));
   }
-  changed_.notify_one();
+  threads_.Post([this] { AnswerNext(); });
 }
 
 bool PlanPool::Withdraw(int id) {
@@ -50,9 +44,8 @@ int PlanPool::num_running() const {
 }
 
 std::shared_ptr<PlanJob> PlanPool::Next() {
-  std::unique_lock<std::mutex> lock(mutex_);
-  changed_.wait(lock, [this] { return is_ending_ || !waiting_.empty(); });
-  if (is_ending_) return nullptr;
+  const std::lock_guard<std::mutex> lock(mutex_);
+  if (is_ending_ || waiting_.empty()) return nullptr;
   std::shared_ptr<PlanJob> job = std::move(waiting_.front());
   waiting_.pop_front();
   running_.push_back(job);
@@ -60,15 +53,15 @@ std::shared_ptr<PlanJob> PlanPool::Next() {
   return job;
 }
 
-void PlanPool::Run() {
-  while (const std::shared_ptr<PlanJob> job = Next()) {
-    hires::PlanResult result = answer_(job.get());
-    {
-      const std::lock_guard<std::mutex> lock(mutex_);
-      running_.erase(std::find(running_.begin(), running_.end(), job));
-    }
-    answered_->Post({job->id, std::move(result)});
+void PlanPool::AnswerNext() {
+  const std::shared_ptr<PlanJob> job = Next();
+  if (job == nullptr) return;
+  hires::PlanResult result = answer_(job.get());
+  {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    running_.erase(std::find(running_.begin(), running_.end(), job));
   }
+  answered_->Post({job->id, std::move(result)});
 }
 
 }  // namespace hires_ros

@@ -4,17 +4,16 @@
 #include <hires/PlanResult.h>
 
 #include <atomic>
-#include <condition_variable>
 #include <cstdint>
 #include <deque>
 #include <functional>
 #include <limits>
 #include <memory>
 #include <mutex>
-#include <thread>
 #include <vector>
 
 #include "hires/base/mailbox.h"
+#include "hires/base/thread_pool.h"
 
 namespace hires_ros {
 
@@ -61,17 +60,16 @@ class PlanPool {
   int num_running() const;
 
  private:
-  void Run();
-  std::shared_ptr<PlanJob> Next();  ///< waits; nothing at the end
+  void AnswerNext();
+  std::shared_ptr<PlanJob> Next();  ///< nothing where the job was withdrawn, and at the end
 
   const Answer answer_;
   hires::base::Mailbox<PlanAnswered>* const answered_;
   mutable std::mutex mutex_;
-  std::condition_variable changed_;
   std::deque<std::shared_ptr<PlanJob>> waiting_;
   std::vector<std::shared_ptr<PlanJob>> running_;
   bool is_ending_{false};
-  std::vector<std::thread> threads_;
+  hires::base::ThreadPool threads_;  // last: it uses the others
 };
 
 }  // namespace hires_ros

@@ -7,7 +7,7 @@
 #include <string>
 #include <utility>
 
-#include "hires/base/work_thread.h"
+#include "hires/base/thread_pool.h"
 
 namespace hires_ros {
 
@@ -31,7 +31,7 @@ class MapRequest {
   mutable std::mutex mutex_;
   std::optional<nav_msgs::OccupancyGrid> answer_;  // guarded
   std::optional<double> asked_;                    // [s] steady, of the open question; guarded
-  hires::base::WorkThread thread_;                 // last: it uses the others
+  hires::base::ThreadPool thread_;                 // last: it uses the others
 };
 
 }  // namespace hires_ros

@@ -1,22 +1,27 @@
-#include "hires/base/work_thread.h"
+#include "hires/base/thread_pool.h"
 
 #include <utility>
 
+#include "hires/base/check.h"
+
 namespace hires::base {
 
-WorkThread::WorkThread() : thread_([this] { Run(); }) {}
+ThreadPool::ThreadPool(int num_threads) {
+  HIRES_CHECK(num_threads >= 1, "a pool without a thread does nothing");
+  for (int i = 0; i < num_threads; ++i) threads_.emplace_back([this] { Run(); });
+}
 
-WorkThread::~WorkThread() {
+ThreadPool::~ThreadPool() {
   {
     const std::lock_guard<std::mutex> lock(mutex_);
     is_ending_ = true;
     waiting_.clear();
   }
   changed_.notify_all();
-  thread_.join();
+  for (std::thread& thread : threads_) thread.join();
 }
 
-void WorkThread::Post(Work work) {
+void ThreadPool::Post(Work work) {
   {
     const std::lock_guard<std::mutex> lock(mutex_);
     if (is_ending_) return;
@@ -25,7 +30,7 @@ void WorkThread::Post(Work work) {
   changed_.notify_one();
 }
 
-void WorkThread::Run() {
+void ThreadPool::Run() {
   while (true) {
     Work work;
     {
