@@ -3,9 +3,9 @@
 #include <memory>
 #include <string>
 
-#include "lab/src/ladder/measure.h"
 #include "hires/imagination/imagination_setup.h"
 #include "hires/simulation/robot_simulator.h"
+#include "lab/src/ladder/measure.h"
 
 namespace hires::lab::ladder {
 
@@ -38,8 +38,8 @@ struct Stepping {
   std::shared_ptr<const simulation::Scene> scene;
   imagination::StartState start;
   simulation::LevelOfDetail level{simulation::LevelOfDetail::kPlanar};
-  double round{0.2};          ///< [s]
-  geometry::Twist2 velocity;  ///< sent ten times a second
+  double round{0.2};            ///< [s]
+  geometry::Twist2 velocity{};  ///< sent ten times a second
 };
 
 /// Settles half a second, which counts nowhere; each round begins there again.

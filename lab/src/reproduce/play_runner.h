@@ -2,12 +2,12 @@
 
 #include <functional>
 #include <map>
-#include <nlohmann/json_fwd.hpp>
+#include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
-#include "lab/src/reproduce/play_store.h"
 #include "lab/src/reproduce/catalogue.h"
+#include "lab/src/reproduce/play_store.h"
 
 namespace hires::lab {
 
@@ -32,8 +32,8 @@ struct PlaysProgress {
 };
 
 struct PlaysOrder {
-  std::vector<Play> plays;  ///< each after those whose answers it takes
-  std::string program, lab_program;     ///< that play: `hires` and `hires_lab`
+  std::vector<Play> plays;           ///< each after those whose answers it takes
+  std::string program, lab_program;  ///< that play: `hires` and `hires_lab`
   std::string package;
   bool again{false};  ///< what is there is played once more
   std::function<bool()> cancelled;
