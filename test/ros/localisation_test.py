@@ -42,6 +42,13 @@ class Node:
         listeners = [rospy.Subscriber(self.space + '/amcl_pose', PoseWithCovarianceStamped, self.poses.append,
                                       queue_size=100),
                      rospy.Subscriber('/tf', TFMessage, self._take, queue_size=100)]
+        # Those of one of its name that runs no more may still be listed.
+        before = [c for publisher in test.publishers for c in publisher.impl.connections]
+        before += [c for listener in listeners for c in listener.impl.connections]
+
+        def is_new(connection):
+            return all(connection is not old for old in before)
+
         self.process = test.processes.start(
             [executable('localisation'), '__ns:=' + self.space, 'base_scan:=/base_scan', 'map:=/map',
              'initialpose:=/initialpose', 'static_map:=/static_map'] + list(arguments), test.main)
@@ -52,9 +59,9 @@ class Node:
         for publisher in test.publishers:
             if publisher is test.maps and has_map:
                 continue
-            wait_until(lambda: any(c.endpoint_id == self.name for c in publisher.impl.connections),
+            wait_until(lambda: any(c.endpoint_id == self.name and is_new(c) for c in publisher.impl.connections),
                        lambda: '%s to listen to %s\n%s' % (self.name, publisher.name, self.process.output()))
-        wait_until(lambda: all(any(c.callerid_pub == self.name for c in listener.impl.connections)
+        wait_until(lambda: all(any(c.callerid_pub == self.name and is_new(c) for c in listener.impl.connections)
                                for listener in listeners),
                    lambda: '%s to be heard\n%s' % (self.name, self.process.output()))
 
