@@ -1,13 +1,9 @@
 #include "cli/verbs/limits/limits_command.h"
 
-#include <unistd.h>
-
 #include <CLI/CLI.hpp>
-#include <algorithm>
 #include <filesystem>
 #include <iostream>
 #include <nlohmann/json.hpp>
-#include <thread>
 
 #include "cli/crew_display.h"
 #include "cli/exit_code.h"
@@ -34,17 +30,12 @@ imagination::SetupConfig SetupOf(const LimitsOptions& o, const std::string& pack
   return setup;
 }
 
+/// Limits are found in several parts, each of which would say what is left of itself.
 base::Crew CrewOf(const LimitsOptions& o, const std::function<bool()>& cancelled) {
-  base::Crew crew;
-  crew.threads = o.threads > 0
-                     ? o.threads
-                     : static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
-  crew.cancelled = cancelled;
-  if (!o.quiet && isatty(STDERR_FILENO) != 0) {
-    crew.on_progress = [begin = base::SteadyNow()](double fraction, double) {
-      std::cerr << '\r' << ProgressText(fraction, base::SteadyNow() - begin) << "\033[K"
-                << std::flush;
-    };
+  base::Crew crew = MakeCrew(o.threads, o.quiet, cancelled);
+  if (crew.on_progress) {
+    crew.on_progress = [show = crew.on_progress, begin = base::SteadyNow()](
+                           double fraction, double) { show(fraction, base::SteadyNow() - begin); };
   }
   return crew;
 }
@@ -94,8 +85,9 @@ int RunLimitsVerb(const LimitsOptions& options, const std::string& package_folde
   std::cout << reports::ClosedFormText(reports::ClosedFormLimits(request.object, setup)) << '\n'
             << std::flush;
   const double begin = base::SteadyNow();
-  auto report = reports::FindLimits(request, setup, CrewOf(options, cancelled));
-  if (!options.quiet && isatty(STDERR_FILENO) != 0) std::cerr << "\r\033[K";
+  const base::Crew crew = CrewOf(options, cancelled);
+  auto report = reports::FindLimits(request, setup, crew);
+  if (crew.on_progress) std::cerr << "\r\033[K";
   if (!report) {
     std::cerr << "hires limits: cancelled; nothing is written\n";
     return kExitCancelled;
