@@ -2,6 +2,8 @@
 """What tests start as processes leaves nothing behind at a master that other tests could meet."""
 
 import os
+import socket
+import subprocess
 import sys
 import unittest
 
@@ -16,6 +18,14 @@ rospy.Publisher('said', std_msgs.msg.Empty, queue_size=1)
 rospy.Subscriber('heard', std_msgs.msg.Empty, lambda _: None)
 rospy.Service('%s/asked', std_srvs.srv.Empty, lambda _: [])
 rospy.spin()
+"""
+# A node's server that says it is a process which nobody here started.
+ANSWERS = """
+import xmlrpc.server
+server = xmlrpc.server.SimpleXMLRPCServer(('127.0.0.1', %d), logRequests=False)
+server.register_function(lambda caller: (1, '', 1), 'getPid')
+print('there', flush=True)
+server.serve_forever()
 """
 
 
@@ -34,6 +44,28 @@ class ProcessesTest(unittest.TestCase):
         self.assertEqual(self.main.subscribers('/heard'), ['/other'])
         self.assertNotIn('/one/asked', self.main.services())
         self.assertIn('/other/asked', self.main.services())
+
+    def test_a_port_that_a_connection_took_is_nobodys_node(self):
+        uri = self.main.node_uri('/one')
+        port = int(uri.strip('/').rsplit(':', 1)[1])
+        self.nodes['one'].kill()
+        with socket.create_server(('127.0.0.1', 0)) as server, socket.socket() as connection:
+            connection.bind(('127.0.0.1', port))
+            connection.connect(server.getsockname())
+            self.main.forget_the_gone()
+        self.assertEqual(self.main.publishers('/said'), ['/other'])
+
+    def test_a_port_that_a_node_of_another_master_took_is_nobodys_node(self):
+        uri = self.main.node_uri('/one')
+        self.nodes['one'].kill()
+        port = int(uri.strip('/').rsplit(':', 1)[1])
+        answers = subprocess.Popen([sys.executable, '-c', ANSWERS % port], stdout=subprocess.PIPE)
+        self.addCleanup(answers.stdout.close)
+        self.addCleanup(answers.wait)
+        self.addCleanup(answers.kill)
+        answers.stdout.readline()
+        self.main.forget_the_gone()
+        self.assertEqual(self.main.publishers('/said'), ['/other'])
 
     def test_what_is_killed_stays_registered_as_after_a_crash(self):
         self.nodes['one'].kill()

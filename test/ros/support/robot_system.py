@@ -125,7 +125,10 @@ class RobotSystem:
     def require_ready(self):
         """In lockstep an action is refused until the robot waits for its controllers' answers."""
         self.require_server()
-        wait_for_middle_layer(self.rospy)
+        try:
+            wait_for_middle_layer(self.rospy)
+        except AssertionError as error:
+            raise AssertionError('%s\n%s' % (error, self.output()))
 
     def _has_server(self):
         # Goal and cancel have a listener, and status, feedback and result come from it.

@@ -210,12 +210,9 @@ class Master:
         has, and a subscriber that still tries the dead one does not notice the new one there. Who
         waits until a service is registered takes that of the dead for the next one's."""
         publishers, subscribers, services = self._call('getSystemState') or [[], [], []]
-        gone = {}
-        for node in {node for _, nodes in publishers + subscribers + services for node in nodes}:
-            uri = self.node_uri(node) or ''
-            port = int(uri.strip('/').split(':')[-1]) if uri.startswith('http://127.0.0.1:') else 0
-            if port and is_port_free(port):
-                gone[node] = uri
+        nodes = {node for _, nodes in publishers + subscribers + services for node in nodes}
+        uris = {node: self.node_uri(node) or '' for node in nodes}
+        gone = {node: uri for node, uri in uris.items() if self._is_gone(uri)}
         for service, nodes in services:
             for node in gone.keys() & set(nodes):
                 uri = self._call('lookupService', service)
@@ -225,6 +222,20 @@ class Master:
             for topic, nodes in topics:
                 for node in gone.keys() & set(nodes):
                     self._call(unregister, topic, gone[node], caller=node)
+
+    def _is_gone(self, uri):
+        """Whether nobody listens there, or somebody who belongs to another master and was given the port.
+        That the port could be bound would not tell: a connection that somebody opened may have it."""
+        if not uri.startswith('http://127.0.0.1:'):
+            return False
+        try:
+            with xmlrpc.client.ServerProxy(uri, transport=_BoundedTransport()) as node:
+                pid = node.getPid('/test')[2]
+        except ConnectionRefusedError:
+            return True
+        except (OSError, xmlrpc.client.Error, xmlrpc.client.http.client.HTTPException, IndexError):
+            return False  # it may be stopped
+        return not _is_below(pid, os.getpid()) and pid not in processes_with('ROS_MASTER_URI', self.uri)
 
     def _call(self, method, *arguments, caller='/test'):
         """The value, or None when there is no answer or a failure."""
@@ -318,6 +329,17 @@ class Processes:
         for master in self._masters:
             master.process.end()
         self.folder.cleanup()
+
+
+def _is_below(pid, ancestor):
+    """Whether a process is the ancestor or was started by it, through however many others."""
+    while pid > 1 and pid != ancestor:
+        try:
+            with open('/proc/%d/stat' % pid) as file:
+                pid = int(file.read().rsplit(')', 1)[1].split()[1])
+        except OSError:
+            return False
+    return pid == ancestor
 
 
 def processes_with(variable, value):
