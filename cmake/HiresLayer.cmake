@@ -2,29 +2,38 @@
 # benchmark file; tests are in HiresTests.cmake. A layer's folders are include/hires/<name>, src/<name>, test/<name>. Headers that
 # other layers and packages include are in the first, those of the layer alone beside its sources.
 
-# hires_layer(<name> [SOURCES a.cpp ...] [DEPENDS lower layers and rooms ...] [LINK libraries ...])
+# hires_layer(<name> [SOURCES a.cpp ...] [DEPENDS lower layers and rooms ...] [LINK libraries ...]
+#             [LITTLE_OPTIMISED])
 # Call it in src/<name>/CMakeLists.txt. A room with a library of its own is <layer>/<room> in DEPENDS; a
 # layer that names its own rooms there is linked with them, so that who takes the layer has them all.
 function(hires_layer name)
   hires_library(hires_${name} ${ARGN})
 endfunction()
 
-# hires_room(<layer> <room> [SOURCES a.cpp ...] [DEPENDS layers and rooms ...] [LINK libraries ...]): what
-# stands in src/<layer>/<room>/ as the library hires_<layer>_<room>, for those who need no more of the layer.
+# hires_room(<layer> <room> [SOURCES a.cpp ...] [DEPENDS layers and rooms ...] [LINK libraries ...]
+# [LITTLE_OPTIMISED]): what stands in src/<layer>/<room>/ as the library hires_<layer>_<room>, for those who need no more of the layer.
 function(hires_room layer room)
-  cmake_parse_arguments(ROOM "" "" "SOURCES;DEPENDS;LINK" ${ARGN})
+  cmake_parse_arguments(ROOM "LITTLE_OPTIMISED" "" "SOURCES;DEPENDS;LINK" ${ARGN})
   list(TRANSFORM ROOM_SOURCES PREPEND ${room}/)
-  hires_library(hires_${layer}_${room} SOURCES ${ROOM_SOURCES} DEPENDS ${ROOM_DEPENDS} LINK ${ROOM_LINK})
+  set(optimised)
+  if(ROOM_LITTLE_OPTIMISED)
+    set(optimised LITTLE_OPTIMISED)
+  endif()
+  hires_library(hires_${layer}_${room} SOURCES ${ROOM_SOURCES} DEPENDS ${ROOM_DEPENDS} LINK ${ROOM_LINK}
+    ${optimised})
   set_property(GLOBAL APPEND PROPERTY HIRES_ROOMS_${layer} hires_${layer}_${room})
 endfunction()
 
 function(hires_library target)
-  cmake_parse_arguments(LAYER "" "" "SOURCES;DEPENDS;LINK" ${ARGN})
+  cmake_parse_arguments(LAYER "LITTLE_OPTIMISED" "" "SOURCES;DEPENDS;LINK" ${ARGN})
   set(scope PUBLIC)
   if(LAYER_SOURCES)
     add_library(${target} STATIC ${LAYER_SOURCES})
     set_target_properties(${target} PROPERTIES POSITION_INDEPENDENT_CODE ON)
     target_compile_options(${target} PRIVATE ${HIRES_WARNINGS})
+    if(LAYER_LITTLE_OPTIMISED)
+      target_compile_options(${target} PRIVATE ${HIRES_LITTLE_OPTIMISED})
+    endif()
     hires_compile_together(${target})
     # Headers beside their sources are included by their path from src/.
     target_include_directories(${target} PUBLIC $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}/src>)

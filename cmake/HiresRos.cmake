@@ -22,8 +22,8 @@ catkin_package(
   CFG_EXTRAS HiresCore.cmake FindClassLoader.cmake HiresActionLibrary.cmake
   CATKIN_DEPENDS actionlib actionlib_msgs geometry_msgs message_runtime roscpp sensor_msgs std_msgs)
 
-# Code that sees ROS converts and waits; what is to be fast lies below. -O1 builds it a quarter faster.
-set(HIRES_ROS_OPTIONS ${HIRES_WARNINGS} $<$<CONFIG:Release>:-O1>)
+# Code that sees ROS converts and waits; what is to be fast lies below.
+set(HIRES_ROS_OPTIONS ${HIRES_WARNINGS} ${HIRES_LITTLE_OPTIMISED})
 
 # hires_sees_ros(<target>): a library that includes ROS and messages, which are made before it.
 function(hires_sees_ros target)
