@@ -16,7 +16,7 @@ sys.path.insert(0, HERE)
 from host_processes import (HERE_IN_SOURCE, HostProcesses, MAIN_PORT, TwoHostSystem,  # noqa: E402
                             executable, wait_until)
 from network import Network, skip_unless_possible  # noqa: E402
-from test_run import run_test  # noqa: E402
+from test_run import long_case, run_test  # noqa: E402
 
 ROLLOUTS = 24
 FEW = 8
@@ -49,6 +49,7 @@ class HostsTest(unittest.TestCase):
             self.assertEqual(answer.rollouts(), [rollouts, rollouts])
             self.assertEqual(answer.content(), local.content())
 
+    @long_case
     def test_another_host_answers_as_one_process_also_when_it_is_cut_off_meanwhile(self):
         system = self.system().start()
         undisturbed = system.ask(rollouts=ROLLOUTS).answer()

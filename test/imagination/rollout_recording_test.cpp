@@ -7,6 +7,7 @@
 
 #include "hires/base/text.h"
 #include "imagination/room_rollouts.h"
+#include "support/rounds.h"
 
 namespace hires::imagination::rollout_recording_test {
 namespace {
@@ -33,14 +34,15 @@ RolloutRecording Record(const RolloutSetup& setup, int index) {
   return recording.value_or(RolloutRecording());
 }
 
-TEST(RecordRolloutTest, TwoHundredPlayedAgainAreThoseThatWereImagined) {
+TEST(RecordRolloutTest, ManyPlayedAgainAreThoseThatWereImagined) {
   const RolloutSetup setup = Disturbed();
   std::vector<RolloutResult> results;
-  for (int i = 0; i < 200; ++i) results.push_back(*PlayRollout(setup, kFast, i));
+  const int num_rollouts = test_support::Rounds(200);
+  for (int i = 0; i < num_rollouts; ++i) results.push_back(*PlayRollout(setup, kFast, i));
   const Evidence evidence = SumUp(results);
   ASSERT_GT(evidence.falls, 0);  // both kinds are there
-  ASSERT_LT(evidence.falls, 200);
-  for (int i = 0; i < 200; ++i) {
+  ASSERT_LT(evidence.falls, num_rollouts);
+  for (int i = 0; i < num_rollouts; ++i) {
     const RolloutRecording recording = Record(setup, i);
     EXPECT_TRUE(SameOutcome(recording.result, results[i])) << i;
     EXPECT_TRUE(IsAmong(evidence, recording.result)) << i;

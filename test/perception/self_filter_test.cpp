@@ -10,6 +10,7 @@
 #include "hires/perception/depth_sensor.h"
 #include "hires/perception/line_of_sight.h"
 #include "support/rays.h"
+#include "support/rounds.h"
 #include "support/sight_scenes.h"
 
 namespace hires::perception::self_filter_test {
@@ -93,7 +94,7 @@ std::vector<Collision> AnyParts(base::Rng* rng) {
 
 TEST(SelfFilterTest, CutsAllPointsWithinThePaddingAndNoneBeyondIt) {
   constexpr double kSinglePrecision = 1e-5;
-  for (int seed = 0; seed < 100; ++seed) {
+  for (int seed = 0; seed < test_support::Rounds(100); ++seed) {
     base::Rng rng(seed);
     const auto parts = AnyParts(&rng);
     const SelfFilterParams params{rng.Uniform(0.0, 0.1), 0.05};
@@ -121,7 +122,7 @@ TEST(SelfFilterTest, CutsAllPointsWithinThePaddingAndNoneBeyondIt) {
 
 TEST(SelfFilterTest, CutsWhatVeilsAnEdgeAndNothingElseBehindTheRobot) {
   int num_veils = 0, num_steady = 0;
-  for (int seed = 0; seed < 25; ++seed) {
+  for (int seed = 0; seed < test_support::Rounds(25); ++seed) {
     base::Rng rng(1000 + seed);
     const auto parts = AnyParts(&rng);
     const SelfFilterParams params{0.03, 0.05};

@@ -10,6 +10,7 @@
 #include "hires/planning/step_replay.h"
 #include "planning/support/conditions.h"
 #include "planning/support/plans.h"
+#include "support/rounds.h"
 
 namespace hires::planning::plan_order_test {
 namespace {
@@ -247,7 +248,7 @@ std::set<std::string> FinalFacts(const StepReplay& replay) {
 TEST(PartialOrderPropertyTest, EveryLinearExtensionCanBeExecutedAndEndsInTheSameState) {
   const Domain domain = FreeDomainOf(kRandomItems);
   int num_extensions = 0;
-  for (int seed = 0; seed < 300; ++seed) {
+  for (int seed = 0; seed < test_support::Rounds(300); ++seed) {
     base::Rng rng(seed);
     const std::string facts = rng.Bernoulli(0.5) ? "((p a) (p b) (q a))" : "((p c) (q c) (q d))";
     const std::vector<std::string> steps = RandomSteps(domain, FlatProblem(facts, {}), 6, &rng);

@@ -21,7 +21,7 @@ sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), 'sup
 from diagnostics import wait_for_guard  # noqa: E402
 from failures import text_of  # noqa: E402
 from ros_processes import Processes, executable, wait_until  # noqa: E402
-from test_run import run_test  # noqa: E402
+from test_run import long_case, run_test  # noqa: E402
 
 ROOT = os.path.join(os.path.dirname(os.path.abspath(__file__)), '..', '..')
 CONFIG = os.path.join(ROOT, 'config', 'base_guard.yaml')
@@ -178,6 +178,7 @@ class BaseGuardTest(unittest.TestCase):
         self.commander.signal(signal.SIGCONT)
         self.require_nothing_moves()
 
+    @long_case
     def test_a_localiser_that_hangs(self):
         self.drive()
         self.localiser.signal(signal.SIGSTOP)
@@ -208,6 +209,7 @@ class BaseGuardTest(unittest.TestCase):
 
     # And afterwards.
 
+    @long_case
     def test_a_new_request_drives_again(self):
         self.drive()
         self.requester.kill()
@@ -216,6 +218,7 @@ class BaseGuardTest(unittest.TestCase):
         self.wait_for_state(BaseGuardState.PASSING, request=2)
         self.wait_for_speed(FULL_SPEED)
 
+    @long_case
     def test_a_new_request_waits_for_motors(self):
         self.drive()
         self.motors.publish(True)

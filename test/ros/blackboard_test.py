@@ -14,7 +14,7 @@ import yaml
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), 'support'))
 
 from ros_processes import LIMIT, Processes, executable, wait_until  # noqa: E402
-from test_run import run_test  # noqa: E402
+from test_run import long_case, run_test  # noqa: E402
 
 ROOT = os.path.abspath(os.path.join(os.path.dirname(os.path.abspath(__file__)), '..', '..'))
 ONTOLOGY = [os.path.join(ROOT, 'config', 'ontology', name) for name in ('upper.ttl', 'race.ttl')]
@@ -481,6 +481,7 @@ class BlackboardTest(unittest.TestCase):
                 break
         self.refuse('demand', 'max_topics', name='one_more', exact=['Mug'])
 
+    @long_case
     def test_a_bag_of_changes_fills_another_blackboard(self):
         bag = os.path.join(self.processes.folder.name, 'changes.bag')
         recorder = self.processes.start(
@@ -550,6 +551,7 @@ class BlackboardTest(unittest.TestCase):
 
     # The node itself.
 
+    @long_case
     def test_what_was_acknowledged_survives_being_killed(self):
         for round_number in range(3):
             acknowledged, failures = [], []

@@ -14,7 +14,7 @@ import failures  # noqa: E402
 from diagnostics import diagnostics  # noqa: E402
 from execution_system import CARRY, SERVE, ExecutionSystem, text_of  # noqa: E402
 from ros_processes import executable, wait_until  # noqa: E402
-from test_run import run_test  # noqa: E402
+from test_run import long_case, run_test  # noqa: E402
 
 NORTH = 'premanipulationareanorthtable1'
 MOST_REACTION = 50.0  # [ms] from an event to what is dispatched for it
@@ -179,6 +179,7 @@ class ExecutionMonitorTest(unittest.TestCase):
         verb.signal(signal.SIGKILL)
         wait_until(lambda: 'preempted move_base' in self.system.log(), 'the robot to be stopped')
 
+    @long_case
     def test_a_client_that_is_slow_to_answer_is_waited_for(self):
         self.system.behave('move_base', hang=True)
         verb = self.hires(CARRY)
@@ -371,6 +372,7 @@ class ExecutionMonitorTest(unittest.TestCase):
         outcomes = wait_until(lambda: self.ended_after(before, 10), 'the end of ten episodes')
         self.assertEqual(outcomes, 10 * ['preempted: preempted'])
 
+    @long_case
     def test_without_a_blackboard_a_task_is_refused_at_first_only(self):
         self.system.kill('monitor')
         self.system.kill('blackboard')

@@ -14,7 +14,7 @@ sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), 'sup
 
 from diagnostics import diagnostics  # noqa: E402
 from ros_processes import LIMIT, Processes, executable, wait_until  # noqa: E402
-from test_run import run_test  # noqa: E402
+from test_run import long_case, run_test  # noqa: E402
 
 IMAGE, INFO = 'thermal_cam/image_raw', 'thermal_cam/camera_info'
 CONFIG = os.path.join(os.path.dirname(os.path.abspath(__file__)), '..', '..', 'config')
@@ -173,6 +173,7 @@ class HeatReaderTest(unittest.TestCase):
 
     # What is wrong.
 
+    @long_case
     def test_pictures_that_are_wrong_are_dropped_with_the_reason(self):
         self.require_good()
         def good():
@@ -196,6 +197,7 @@ class HeatReaderTest(unittest.TestCase):
         self.refuse(self.image(picture()[:240]), "640 x 240 pixels, its camera_info says 640 x 480")
         self.require_good()
 
+    @long_case
     def test_a_camera_that_is_not_calibrated_is_said(self):
         self.require_good()
         uncalibrated = self.info()

@@ -18,7 +18,7 @@ from diagnostics import diagnostics  # noqa: E402
 from ros_processes import Processes, executable, wait_until  # noqa: E402
 from scanned_room import (ANGLES, BASE, RESOLUTION, HearsEchoes, Laser, Robot, after, laser_transform,  # noqa: E402
                           map_message, pose_message, room, scan_message, transform_message, wrapped, yaw_of)
-from test_run import run_test  # noqa: E402
+from test_run import long_case, run_test  # noqa: E402
 
 ODOMETRY = 'odom_combined'
 PERIOD = 0.2      # [s] between scans
@@ -237,6 +237,7 @@ class LocalisationTest(HearsEchoes, unittest.TestCase):
         self.assertLess(errors[-1][0], 0.15)
         self.assertLess(node.poses[-1].pose.covariance[0], 0.1)
 
+    @long_case
     def test_a_robot_whose_laser_goes_blind_is_less_and_less_sure_and_lost_and_finds_itself(self):
         node = self.begun()
         self.drive(10, node)
@@ -327,6 +328,7 @@ class LocalisationTest(HearsEchoes, unittest.TestCase):
 
     # What is wrong.
 
+    @long_case
     def test_scans_that_are_wrong_are_dropped_with_the_reason(self):
         from geometry_msgs.msg import Quaternion
         from tf2_msgs.msg import TFMessage
@@ -387,6 +389,7 @@ class LocalisationTest(HearsEchoes, unittest.TestCase):
         self.step(node)
         self.say(node, lambda v: v['message'] == 'good')
 
+    @long_case
     def test_a_clock_that_begins_again_is_gone_along_with(self):
         node = self.begun()
         self.drive(10, node)
@@ -427,6 +430,7 @@ class LocalisationTest(HearsEchoes, unittest.TestCase):
         refuse('covariance', lambda m: m.pose.covariance.__setitem__(0, -1.0))
         self.assertLess(self.drive(5, node)[-1][0], 0.15)
 
+    @long_case
     def test_maps_that_are_none_are_refused_and_static_map_is_asked(self):
         from nav_msgs.srv import GetMap, GetMapResponse
         node = Node(self)
@@ -451,6 +455,7 @@ class LocalisationTest(HearsEchoes, unittest.TestCase):
         self.step(node)
         self.assertLess(self.drive(5, node)[-1][0], 0.15)
 
+    @long_case
     def test_a_map_server_that_never_answers_holds_up_nothing(self):
         from nav_msgs.srv import GetMap, GetMapResponse
         answer = threading.Event()

@@ -17,7 +17,7 @@ from diagnostics import diagnostics  # noqa: E402
 from ros_processes import Processes, executable, wait_until  # noqa: E402
 from scanned_room import (ANGLES, BASE, RANGE_MAX, RESOLUTION, HearsEchoes, Laser, Robot, after,  # noqa: E402
                           laser_transform, room, scan_message, transform_message, wrapped, yaw_of)
-from test_run import run_test  # noqa: E402
+from test_run import long_case, run_test  # noqa: E402
 
 ODOMETRY = 'odom_combined'
 PERIOD = 0.2      # [s] between scans
@@ -214,6 +214,7 @@ class MappingTest(HearsEchoes, unittest.TestCase):
         self.assertEqual(self.map_of(node).header.stamp, self.rospy.Time.from_sec(self.now))
         wait_until(lambda: len(node.maps) == 4, 'the fourth map')
 
+    @long_case
     def test_the_last_scans_are_drawn_when_no_more_come(self):
         node = self.begun()
         self.drive(3, node)
@@ -255,6 +256,7 @@ class MappingTest(HearsEchoes, unittest.TestCase):
 
     # What is wrong.
 
+    @long_case
     def test_scans_that_are_wrong_are_dropped_with_the_reason(self):
         from nav_msgs.srv import GetMap
         node = Node(self)

@@ -16,7 +16,7 @@ sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), 'sup
 from failures import text_of  # noqa: E402
 from robot_system import COUNTER, MUG, RobotSystem  # noqa: E402
 from ros_processes import wait_until  # noqa: E402
-from test_run import run_test  # noqa: E402
+from test_run import long_case, run_test  # noqa: E402
 
 # Poses of areas in worlds/restaurant.world: x, y [m], yaw [rad].
 EAST_TABLE_2 = (11.78, 11.49, 3.14)
@@ -206,6 +206,7 @@ class MiddleLayerTest(unittest.TestCase):
         wait_until(watch.is_over, 'no path and no costmap')
         self.require_path(watch.paths[0], START, EAST_TABLE_2)
 
+    @long_case
     def test_motion_sets_bound_the_speed(self):
         fastest = {}
         for motion_set, area in (('slow', 'preManipulationAreaWestTable2'),
@@ -222,6 +223,7 @@ class MiddleLayerTest(unittest.TestCase):
         self.require(goal.result(), self.codes.SUCCEEDED)
         self.require_arrival((13.0, 11.3), 0.05)
 
+    @long_case
     def test_a_pushed_robot_plans_anew_and_arrives(self):
         goal = self.execute_until(lambda s: distance(s, START) > 0.5, 'the robot to be on its way',
                                   'move_base', 'preManipulationAreaWestTable2')
@@ -310,6 +312,7 @@ class MiddleLayerTest(unittest.TestCase):
         took -= self.system.truth[first - 1][0]
         self.assertLess(took * 1e-9, sum(durations))
 
+    @long_case
     def test_preempting_the_torso_leaves_it_where_it_is(self):
         self.begin(scenario=TOPPLE)
         goal = self.execute_until(lambda s: self.joints()['torso_lift_joint'] > 0.05,
@@ -318,6 +321,7 @@ class MiddleLayerTest(unittest.TestCase):
         self.require_standing_joints()
         self.assertLess(self.joints()['torso_lift_joint'], 0.29)
 
+    @long_case
     def test_preempting_arms_leaves_them_where_they_are(self):
         self.begin(scenario=TOPPLE)
         goal = self.execute_until(lambda s: self.joints()['r_shoulder_lift_joint'] < 0.7,
@@ -368,6 +372,7 @@ class MiddleLayerTest(unittest.TestCase):
                                    'placingAreaEastRightCounter1')
         goal.result()  # whatever it can do from there: the next one is taken
 
+    @long_case
     def test_an_object_that_vanishes_before_it_is_grasped_is_missed(self):
         self.begin_at_counter()
         goal = self.pick_up_until('reach')
@@ -378,6 +383,7 @@ class MiddleLayerTest(unittest.TestCase):
         self.assertEqual(result.code, self.codes.FAILED)
         self.assertIn(text_of(result.failure), ('grasp_failed', 'object_not_seen', 'object_slipped'))
 
+    @long_case
     def test_an_object_that_slips_away_is_missed_when_it_is_placed(self):
         self.begin_at_counter()
         goal = self.system.execute('pick_up_object', 'mug1', 'rightArm1')

@@ -14,7 +14,7 @@ from diagnostics import diagnostics  # noqa: E402
 from pr2_frames import quaternion, rotation  # noqa: E402
 from ros_processes import Processes, executable, wait_until  # noqa: E402
 from scanned_room import BASE, Robot, odometry_message, wrapped, yaw_of  # noqa: E402
-from test_run import run_test  # noqa: E402
+from test_run import long_case, run_test  # noqa: E402
 
 PERIOD = 0.02   # [s] of wheels and unit
 UNIT, UPSIDE_DOWN = 'imu_link', 'imu_upside_down'
@@ -157,6 +157,7 @@ class OdometryFilterTest(unittest.TestCase):
         self.step(node, frame=UPSIDE_DOWN)
         self.assertLess(self.errors(self.drive(200, node, frame=UPSIDE_DOWN)[0])[1], 0.01)
 
+    @long_case
     def test_a_unit_that_tells_rates_alone_corrects_as_well(self):
         plain, before = self.inertia, [0.0]
 
@@ -230,6 +231,7 @@ class OdometryFilterTest(unittest.TestCase):
 
     # What is wrong.
 
+    @long_case
     def test_readings_that_are_wrong_are_dropped_with_the_reason(self):
         node = Node(self)
         self.step(node)

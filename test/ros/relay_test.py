@@ -12,7 +12,7 @@ import yaml
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), 'support'))
 
 from ros_processes import Processes, executable, wait_until  # noqa: E402
-from test_run import run_test  # noqa: E402
+from test_run import long_case, run_test  # noqa: E402
 
 CONFIG = {
     'foreign_master': 'http://127.0.0.1:1/',
@@ -196,6 +196,7 @@ class RelayTest(unittest.TestCase):
         self.assertEqual(relay.wait(), 0)
         self.wait_for_withdrawal(self.main, '/worker_1/scan')
 
+    @long_case
     def test_an_established_stream_outlives_the_relay_and_loses_nothing(self):
         relay = self.start_relay()
         self.peer(self.foreign, 'stream', '/worker_1/scan', '1000', name='talker')

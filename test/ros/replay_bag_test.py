@@ -20,7 +20,7 @@ sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), 'sup
 
 from imagination_system import ImaginationSystem  # noqa: E402
 from ros_processes import LIMIT, executable, wait_until  # noqa: E402
-from test_run import run_test  # noqa: E402
+from test_run import long_case, run_test  # noqa: E402
 
 SOUTH, NORTH = 'preManipulationAreaSouthTable1', 'preManipulationAreaNorthTable1'
 COMPLETE = ('one_way', 'two_ways', 'refused')  # requests whose answers must repeat themselves
@@ -149,6 +149,7 @@ class ReplayBagTest(unittest.TestCase):
             with self.subTest(threads=threads):
                 self.require_all_identical(*self.replay('--local', '--threads', threads))
 
+    @long_case
     def test_another_seed_differs(self):
         def change(message):
             if message._type.endswith('Goal') and message.goal.request_id == 'one_way':
@@ -258,6 +259,7 @@ class ReplayBagTest(unittest.TestCase):
                    'old goals to leave the status list')
         subscriber.unregister()
 
+    @long_case
     def test_rosbag_play_of_the_goals_alone_drives_a_running_client(self):
         self.wait_until_forgotten()
         self.require_same_results(self.play('--topics', '/imagine/goal'))

@@ -13,7 +13,7 @@ sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), 'sup
 
 from robot_system import RobotSystem  # noqa: E402
 from ros_processes import LIMIT, executable, wait_until  # noqa: E402
-from test_run import run_test  # noqa: E402
+from test_run import long_case, run_test  # noqa: E402
 
 START = (12.5, 11.8)
 
@@ -185,6 +185,7 @@ class SimRobotTest(unittest.TestCase):
         answer = self.system.call('place_object', srv.PlaceObject, name='unicorn1', pose=pose)
         self.assertIn('unicorn1', answer.message)
 
+    @long_case
     def test_bad_parameters_stop_the_node_with_the_reason(self):
         for argument, reason in (('_role:=dog', 'role is dog'), ('_pace:=-1.0', 'pace is -1'),
                                  ('_area:=nowhere', 'nowhere'), ('_colour:=red', 'colour'),

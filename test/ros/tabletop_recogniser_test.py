@@ -16,7 +16,7 @@ sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), 'sup
 
 from diagnostics import diagnostics  # noqa: E402
 from ros_processes import LIMIT, Processes, executable, wait_until  # noqa: E402
-from test_run import run_test  # noqa: E402
+from test_run import long_case, run_test  # noqa: E402
 
 CLOUD = 'head_mount_kinect/depth_registered/points'
 CAMERA = 'camera_optical'
@@ -247,6 +247,7 @@ class TabletopRecogniserTest(unittest.TestCase):
 
     # What is wrong.
 
+    @long_case
     def test_clouds_that_are_wrong_are_dropped_with_the_reason(self):
         def good():
             return self.cloud(points_of([FLOOR, TABLE, BOX]), self.next_stamp())
@@ -302,12 +303,14 @@ class TabletopRecogniserTest(unittest.TestCase):
         self.refuse(message, 's old, wanted 3 at most')
         self.assertGreaterEqual(int(self.say('recognises')['dropped, too old']), 1)
 
+    @long_case
     def test_a_cloud_that_comes_again_when_it_is_old_is_dropped(self):
         message = self.cloud(points_of([FLOOR, TABLE, BOX]), self.next_stamp())
         self.answer_to(message)
         wait_until(lambda: time.time() > message.header.stamp.to_sec() + MAX_AGE, 'it to be old')
         self.refuse(message, 's old, wanted 3 at most')
 
+    @long_case
     def test_clouds_of_the_future_are_dropped(self):
         for ahead in (5.0, 2.4e9):
             with self.subTest(ahead=ahead):
@@ -315,6 +318,7 @@ class TabletopRecogniserTest(unittest.TestCase):
                 self.refuse(message, 's in the future, wanted 0.5 at most')
         self.assertGreaterEqual(int(self.say('recognises')['dropped, ahead of time']), 2)
 
+    @long_case
     def test_a_cloud_whose_transform_does_not_come_is_dropped_in_the_end(self):
         message = self.cloud(points_of([FLOOR, TABLE, BOX]), self.next_stamp(), 'never_told_camera')
         self.refuse(message, 's old for the transform of \'never_told_camera\'')

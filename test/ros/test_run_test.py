@@ -54,6 +54,18 @@ NO_BEGINNING = HEAD + """
 run_test('some', SomeTest)
 """
 
+LONG = HEAD.replace('import run_test', 'import long_case, run_test') + """
+    def test_something(self):
+        pass
+
+    @long_case
+    def test_something_that_takes_long(self):
+        self.fail('it was played')
+
+
+run_test('some', SomeTest)
+"""
+
 ALL_WELL = HEAD + """
     def test_something(self):
         print('told on the way')
@@ -64,12 +76,13 @@ run_test('some', SomeTest)
 
 
 class TestRunTest(unittest.TestCase):
-    def run_cases(self, program):
+    def run_cases(self, program, **environment):
         """(exit code, what it printed, {name: [texts of failures and errors]} of its file)"""
         with tempfile.TemporaryDirectory() as folder:
             path = os.path.join(folder, 'result.xml')
             run = subprocess.run(
                 [sys.executable, '-B', '-c', program, '--gtest_output=xml:' + path],
+                env={**{k: v for k, v in os.environ.items() if k != 'HIRES_LONG_TESTS'}, **environment},
                 stdin=subprocess.DEVNULL, capture_output=True, text=True, check=False)
             self.result = junitxml.read(path, 'some')
         told = {}
@@ -112,6 +125,14 @@ class TestRunTest(unittest.TestCase):
         self.assertEqual((code, told), (0, {'test_something': []}))
         self.assertIn('SUCCESS', output)
         self.assertIn('told on the way', self.result.system_out)
+
+    def test_a_long_case_is_played_in_a_long_run_alone(self):
+        code, output, told = self.run_cases(LONG)
+        self.assertEqual((code, told), (0, {'test_something': []}))
+        self.assertIn('1 of 2 cases are left to scripts/test --long', output)
+        code, output, told = self.run_cases(LONG, HIRES_LONG_TESTS='ON')
+        self.assertEqual(code, 1)
+        self.assertIn('it was played', told['test_something_that_takes_long'][0])
 
 
 if __name__ == '__main__':

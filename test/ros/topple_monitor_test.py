@@ -17,7 +17,7 @@ from diagnostics import diagnostics  # noqa: E402
 from failures import text_of  # noqa: E402
 from robot_system import RobotSystem  # noqa: E402
 from ros_processes import executable, wait_until  # noqa: E402
-from test_run import run_test  # noqa: E402
+from test_run import long_case, run_test  # noqa: E402
 
 CONFIG = os.path.abspath(os.path.join(os.path.dirname(os.path.abspath(__file__)), '..', '..', 'config'))
 X, Y = 12.5, 9.8        # [m] where the robot begins
@@ -248,6 +248,7 @@ class ToppleMonitorTest(unittest.TestCase):
         self.assertNotEqual(node.wait(), 0)
         self.assertIn(words, node.output())
 
+    @long_case
     def test_what_is_wrong_with_its_parameters_is_said(self):
         self.require_refusal('~store is missing', store='')
         self.require_refusal('there is no folder /nowhere', store='/nowhere/x.db')

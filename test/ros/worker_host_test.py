@@ -17,7 +17,7 @@ sys.path.insert(0, os.path.join(HERE, 'support'))
 
 from ros_processes import (Processes, executable, free_port_block, is_port_free,  # noqa: E402
                            processes_with, wait_until)
-from test_run import run_test  # noqa: E402
+from test_run import long_case, run_test  # noqa: E402
 
 CONFIG_FOLDER = os.path.join(HERE, '..', '..', 'config')
 MARK = 'HIRES_TEST_MARK'
@@ -160,6 +160,7 @@ class WorkerHostTest(Family, unittest.TestCase):
         self.wait_until_ready(self.start_host())
         wait_until(lambda: self.mirrors() and not set(first) & set(self.mirrors()), 'the purge')
 
+    @long_case
     def test_twenty_starts_and_stops_leave_nothing(self):
         signals = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
         other = Family()  # two side by side, each with a main master of its own

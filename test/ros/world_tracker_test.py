@@ -15,7 +15,7 @@ sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), 'sup
 from diagnostics import diagnostics  # noqa: E402
 from pr2_frames import Robot, planar, quaternion, translation  # noqa: E402
 from ros_processes import LIMIT, Processes, executable, wait_until  # noqa: E402
-from test_run import run_test  # noqa: E402
+from test_run import long_case, run_test  # noqa: E402
 
 ROOT = os.path.abspath(os.path.join(os.path.dirname(os.path.abspath(__file__)), '..', '..'))
 CONFIG = os.path.join(ROOT, 'config')
@@ -286,6 +286,7 @@ class WorldTrackerTest(unittest.TestCase):
         self.expect('poseBook1', 'hasX', 7.48)
         self.expect('onBook1', 'hasArea', 'placingareawestrighttable1')
 
+    @long_case
     def test_an_object_may_be_recognised_when_the_robot_looks_elsewhere(self):
         self.at_table()
         self.rest()
@@ -394,6 +395,7 @@ class WorldTrackerTest(unittest.TestCase):
         top = numpy.stack([x, y, numpy.full_like(x, 0.2)], -1).reshape(-1, 3)
         return numpy.concatenate([floor[~hidden], front, top])
 
+    @long_case
     def test_clouds_that_cannot_be_are_told_of_and_those_that_can_show_what_stands_there(self):
         self.rest()
         good = self.floor_with_box()
@@ -433,6 +435,7 @@ class WorldTrackerTest(unittest.TestCase):
         self.assertAlmostEqual(p.x, x + 1.2 * math.cos(yaw), delta=0.05)
         self.assertAlmostEqual(p.y, y + 1.2 * math.sin(yaw), delta=0.05)
 
+    @long_case
     def test_what_may_be_either_of_two_objects_is_told_to_be_ambiguous(self):
         def shift(x):
             return translation(7.60 + x, 11.25, 0.73)

@@ -3,10 +3,15 @@ output and in the result file.
 
     run_test('my_node', MyNodeTest)
 
+    class MyNodeTest(unittest.TestCase):
+        @long_case
+        def test_what_takes_long_and_seldom_breaks(self): ...  # only in scripts/test --long
+
 rosunit alone counts what fails within `with self.subTest(...)` or in setUpClass and does not say what
 it was; of several failures of one test it keeps the last.
 """
 
+import os
 import sys
 import unittest
 
@@ -59,10 +64,28 @@ class _Result(xmlrunner._XMLTestResult):
         return xmlrunner.time.time() - self._start_time if self._start_time else 0.0
 
 
+def long_case(test):
+    """Marks a case that plays only with HIRES_LONG_TESTS in the environment, as scripts/test --long has it."""
+    test.is_long = True
+    return test
+
+
+def cases_of(case):
+    """The suite of a class, without its long cases where only short ones are wanted."""
+    loader = unittest.TestLoader()
+    names = loader.getTestCaseNames(case)
+    if not os.environ.get('HIRES_LONG_TESTS'):
+        short = [name for name in names if not getattr(getattr(case, name), 'is_long', False)]
+        if len(short) < len(names):
+            print('%d of %d cases are left to scripts/test --long' % (len(names) - len(short), len(names)))
+        names = short
+    return loader.suiteClass(map(case, names))
+
+
 def run_test(name, case):
     """Ends the program with 1 if a test of this class fails.
     @param name  in lists of results."""
-    suite = unittest.TestLoader().loadTestsFromTestCase(case)
+    suite = cases_of(case)
     if '--text' in sys.argv:
         result = unittest.TextTestRunner(verbosity=2).run(suite)
     else:
