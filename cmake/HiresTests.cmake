@@ -114,6 +114,7 @@ function(hires_test_program_of_layer layer)
   # What is tested is as fast as ever; the tests' own code is built in half the time so.
   target_compile_options(${target} PRIVATE ${HIRES_WARNINGS} -O0)
   hires_compile_together(${target})
+  set_target_properties(${target} PROPERTIES UNITY_BUILD_BATCH_SIZE ${HIRES_LARGE_LOT})
   target_compile_definitions(${target} PRIVATE
     HIRES_SOURCE_DIR="${PROJECT_SOURCE_DIR}" HIRES_SHARED_DATA="${HIRES_SHARED_DATA}")
   target_include_directories(${target} PRIVATE ${PROJECT_SOURCE_DIR}/test ${PROJECT_SOURCE_DIR}/src)
