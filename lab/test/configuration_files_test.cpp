@@ -22,6 +22,7 @@ using Reader = std::function<void(const std::string&)>;
 const std::map<std::string, Reader>& Readers() {
   static const std::map<std::string, Reader> readers{
       {"decision.yaml", [](const std::string& path) { ReadDecisionConfig(path); }},
+      {"faults.txt", [](const std::string&) {}},  // lab/scripts/faults reads it: faults_test.py
       {"reproduce.yaml", [](const std::string& path) { ReadCatalogue(path); }},
       {"reproduce_docs.yaml", [](const std::string& path) { ReadCatalogue(path); }},
       {"series", [](const std::string& path) { ReadScenarioSeries(path); }},
