@@ -82,6 +82,7 @@ constexpr FailureInfo kTable[] = {
     {Code::kNoSamples, "no_samples", kRobot, false},
     {Code::kUnfinished, "unfinished", kAction, true},
     {Code::kUnplayable, "unplayable", kRobot, false},
+    {Code::kPhysicsBroke, "physics_broke", kRobot, false},
 
     {Code::kOther, "other", kAction, true},
 };

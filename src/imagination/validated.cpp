@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <set>
+#include <utility>
 
 #include "hires/actions/catalogue.h"
 #include "hires/base/text.h"
@@ -165,6 +166,13 @@ std::vector<std::string> CaveatsOf(const RolloutSetup& setup,
   AddSpeeds(setup, actions, validated, &caveats);
   AddLevels(setup, actions, validated, &caveats);
   return caveats;
+}
+
+void AddCaveats(const RolloutSetup& setup, const std::vector<base::ActionCall>& actions,
+                const Validated& validated, Report* report) {
+  for (std::string& caveat : CaveatsOf(setup, actions, validated)) {
+    report->caveats.push_back(std::move(caveat));
+  }
 }
 
 }  // namespace hires::imagination

@@ -68,6 +68,19 @@ void SetMass(dBodyID body, const geometry::MassProperties& properties) {
   dBodySetMass(body, &mass);
 }
 
+/// [J/kg]
+double TurningEnergy(dBodyID body, const dReal* rotation, const Vector3d& w_W) {
+  dMass mass;
+  dBodyGetMass(body, &mass);
+  const Eigen::Quaterniond R_WB(rotation[0], rotation[1], rotation[2], rotation[3]);
+  const Vector3d w = R_WB.conjugate() * w_W;
+  Matrix3d I;
+  for (int row = 0; row < 3; ++row) {
+    for (int column = 0; column < 3; ++column) I(row, column) = mass.I[4 * row + column];
+  }
+  return 0.5 * w.dot(I * w) / mass.mass;
+}
+
 }  // namespace
 
 PhysicsWorld::Impl::Impl(const PhysicsParams& params_in) : params(params_in), groups(1) {
@@ -216,6 +229,23 @@ void PhysicsWorld::Impl::PutRawBack() {
   }
 }
 
+/// Seen from a surface of constant velocity u, no contact with it gives energy; so it gives a body at most
+/// u |v' - v| for each of its kilograms, and of all that touch at once none more than the fastest.
+void PhysicsWorld::Impl::NoteBroken() {
+  if (broken >= 0) return;
+  for (std::size_t i = 0; i < loose.size(); ++i) {
+    const LooseBody& body = loose[i];
+    if (body.held) continue;
+    const Vector3d v = ToEigen(dBodyGetLinearVel(body.ode)), w = ToEigen(dBodyGetAngularVel(body.ode));
+    const double after =
+        0.5 * v.squaredNorm() + TurningEnergy(body.ode, dBodyGetQuaternion(body.ode), w);
+    if (after <= kUnexplained) continue;
+    const double before = 0.5 * body.v.squaredNorm() + TurningEnergy(body.ode, raw[i].rotation, body.w);
+    const double given = std::sqrt(fastest_surface2) * (v - body.v).norm();
+    if (after - before - given > kUnexplained) broken = body.id;
+  }
+}
+
 void PhysicsWorld::Impl::MoveDriven() {
   for (Group& group : groups) {
     if (group.is_static) continue;
@@ -314,6 +344,7 @@ void PhysicsWorld::Step() {
   Impl& impl = *impl_;
   impl.FindAllContacts();
   impl.MoveLoose();
+  impl.NoteBroken();
   dJointGroupEmpty(impl.joints.get());
   impl.MoveDriven();
   for (LooseBody& body : impl.loose) body.is_canonical = false;
@@ -323,6 +354,10 @@ void PhysicsWorld::Step() {
 std::uint64_t PhysicsWorld::num_steps() const { return impl_->num_steps; }
 int PhysicsWorld::num_contacts() const { return impl_->num_contacts; }
 
+std::optional<BodyId> PhysicsWorld::broken() const {
+  return impl_->broken < 0 ? std::nullopt : std::make_optional(impl_->broken);
+}
+
 PhysicsState PhysicsWorld::Save() {
   PhysicsState state;
   for (BodyId id = 0; id < static_cast<BodyId>(impl_->entries.size()); ++id) {
@@ -331,6 +366,7 @@ PhysicsState PhysicsWorld::Save() {
   for (const LooseBody& body : impl_->loose) {
     if (body.held) state.held.push_back(*body.held);
   }
+  state.broken = impl_->broken;
   Restore(state);
   return state;
 }
@@ -349,6 +385,7 @@ void PhysicsWorld::Restore(const PhysicsState& state) {
     }
   }
   for (const HeldBody& held : state.held) impl_->Grip(held, &impl_->LooseAt(held.loose));
+  impl_->broken = state.broken;
 }
 
 std::vector<std::string> PhysicsWorld::TakeSolverMessages() { return TakeOdeMessages(); }

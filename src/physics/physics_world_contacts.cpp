@@ -71,6 +71,7 @@ void PhysicsWorld::Impl::PlaceLoose(LooseBody* body) {
 
 void PhysicsWorld::Impl::FindAllContacts() {
   num_contacts = 0;
+  fastest_surface2 = 0.0;
   touches.clear();
   for (LooseBody& body : loose) {
     if (body.held) SetLoose(HeldState(body), &body);
@@ -220,7 +221,10 @@ dContact PhysicsWorld::Impl::ContactOf(const PlacedShape& shape, const PlacedSha
 void PhysicsWorld::Impl::AddContact(const ContactPoint& point, const Vector3d& v_other,
                                     double closing_speed, LooseBody* body, LooseBody* other_body,
                                     dContact* contact) {
-  const Vector3d slip = body->v + body->w.cross(point.position - body->p_WC) - v_other;
+  const Vector3d v_body = body->v + body->w.cross(point.position - body->p_WC);
+  const Vector3d slip = v_body - v_other;
+  fastest_surface2 = std::max(fastest_surface2, v_other.squaredNorm());
+  if (other_body != nullptr) fastest_surface2 = std::max(fastest_surface2, v_body.squaredNorm());
   const Vector3d along = FrictionDirection(slip, point.normal);
   contact->surface.motionN = v_other.dot(point.normal) - closing_speed;
   contact->surface.motion1 = v_other.dot(along);

@@ -163,6 +163,7 @@ struct PhysicsWorld::Impl {
   void AddContacts(const PlacedShape& shape, const PlacedShape& other, LooseBody* body,
                    LooseBody* other_body, const SurfaceVelocity& other_velocity);
   void MoveLoose();
+  void NoteBroken();
   void KeepRaw();
   void PutRawBack();
   void MoveDriven();
@@ -171,6 +172,8 @@ struct PhysicsWorld::Impl {
   Vector3d acceleration{Vector3d::Zero()};  // extra, of loose bodies
   std::uint64_t num_steps{0};
   int num_contacts{0};
+  double fastest_surface2{0.0};  // [m^2/s^2] of all that touched a loose body in this step
+  BodyId broken{-1};
   std::unique_ptr<dxThreadingImplementation, Deleters> threading;  // outlives the world
   std::unique_ptr<dxWorld, Deleters> world;
   std::unique_ptr<dxJointGroup, Deleters> joints;

@@ -10,6 +10,7 @@
 
 #include "hires/base/check.h"
 #include "hires/base/error.h"
+#include "physics/box_contacts.h"
 #include "physics/ode_session.h"
 
 namespace hires::physics {
@@ -135,6 +136,10 @@ void AskOde(PlacedShape& a, PlacedShape& b, ContactList* contacts) {
 bool TryOwn(const PlacedShape& a, const PlacedShape& b, const Vector3d& lean,
             ContactList* contacts) {
   using Kind = PlacedShape::Kind;
+  if (a.kind() == Kind::kBox && b.kind() == Kind::kBox) {
+    AddBoxOnBox(a.box(), b.box(), contacts);
+    return true;
+  }
   if (a.kind() != Kind::kCylinder) return false;
   switch (b.kind()) {
     case Kind::kFloor:

@@ -162,7 +162,7 @@ Answer Scene::Imagine(const StartOfAction& start, const base::ActionTemplate& ac
   const int cores = static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
   answer.report = imagination::ImagineLocally(
       rollouts, actions, params, request.threads > 0 ? request.threads : cores, {}, cancelled);
-  answer.report.caveats = imagination::CaveatsOf(rollouts, actions, config_.validated);
+  imagination::AddCaveats(rollouts, actions, config_.validated, &answer.report);
   return answer;
 }
 

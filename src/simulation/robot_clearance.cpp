@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "simulation/touch_shape.h"
+
 namespace hires::simulation {
 namespace {
 
@@ -33,7 +35,8 @@ std::optional<RobotClearance::Prism> RobotClearance::MakePrism(const std::string
   const auto outline =
       geometry::OutlineInBand(shape.shape, X_WS, bounds.lower.z(), bounds.upper.z());
   if (!outline) return std::nullopt;
-  Prism prism{name, *outline, bounds.lower.z(), bounds.upper.z(), {0.0, 0.0}, 0.0};
+  Prism prism{name, *outline, bounds.lower.z(), bounds.upper.z(), {0.0, 0.0}, 0.0,
+              std::make_shared<const TouchShape>(shape.shape), X_WS};
   for (const Eigen::Vector2d& p : *outline) prism.centre += p / outline->size();
   for (const Eigen::Vector2d& p : *outline) {
     prism.radius = std::max(prism.radius, (p - prism.centre).norm());
@@ -56,6 +59,10 @@ RobotClearance::RobotClearance(const std::vector<geometry::Collision>& robot_B,
       }
     }
   }
+}
+
+bool RobotClearance::IsExact(const Prism& part, const Prism& obstacle) {
+  return !part.shape->is_mesh() && !obstacle.shape->is_mesh();
 }
 
 template <typename Visit>
@@ -82,7 +89,12 @@ void RobotClearance::ForNearPairs(const geometry::Pose2& X_MB, double limit, Vis
 
 std::optional<RobotContact> RobotClearance::FindContact(const geometry::Pose2& X_MB) const {
   std::optional<RobotContact> contact;
+  const geometry::Pose3 X_MF = geometry::Lift(X_MB);
   ForNearPairs(X_MB, 0.0, [&](const Prism& part, const Prism& obstacle, double) {
+    if (!IsExact(part, obstacle) &&
+        !part.shape->Touches(X_MF * part.X_FS, *obstacle.shape, obstacle.X_FS)) {
+      return true;
+    }
     contact = RobotContact{part.name, obstacle.name};
     return false;
   });
@@ -91,7 +103,11 @@ std::optional<RobotContact> RobotClearance::FindContact(const geometry::Pose2& X
 
 double RobotClearance::Clearance(const geometry::Pose2& X_MB, double limit) const {
   double nearest = limit;
-  ForNearPairs(X_MB, limit, [&](const Prism&, const Prism&, double distance) {
+  const geometry::Pose3 X_MF = geometry::Lift(X_MB);
+  ForNearPairs(X_MB, limit, [&](const Prism& part, const Prism& obstacle, double distance) {
+    if (!IsExact(part, obstacle)) {
+      distance = part.shape->Distance(X_MF * part.X_FS, *obstacle.shape, obstacle.X_FS);
+    }
     nearest = std::min(nearest, distance);
     return true;
   });

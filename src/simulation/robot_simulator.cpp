@@ -165,6 +165,16 @@ std::string RobotSimulator::HolderOf(int object) const {
   return planar_ ? planar_->HolderOf(object) : objects_->AtStart(object).attached_to;
 }
 
+std::optional<int> RobotSimulator::broken_object() const {
+  const std::optional<physics::BodyId> body = physics_->broken();
+  if (!body) return std::nullopt;
+  for (int i = 0; i < objects_->size(); ++i) {
+    if (objects_->IsLoose(i) && objects_->BodyOf(i) == *body) return i;
+  }
+  HIRES_CHECK(false, "what broke is no object");
+  return std::nullopt;
+}
+
 bool RobotSimulator::IsTouched(int object) const {
   if (!HolderOf(object).empty()) return true;
   const physics::BodyId body = objects_->BodyOf(object);

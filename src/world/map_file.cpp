@@ -4,9 +4,11 @@
 #include <cmath>
 #include <filesystem>
 #include <fstream>
+#include <map>
 
 #include "hires/base/check.h"
 #include "hires/base/error.h"
+#include "hires/base/log.h"
 #include "hires/base/param_reader.h"
 #include "hires/base/text.h"
 #include "hires/world/occupancy_grid.h"
@@ -77,9 +79,13 @@ MapParams ReadMapParams(const std::string& yaml_path) {
   return params;
 }
 
+double BlackOf(std::uint8_t grey, const MapParams& params) {
+  return (params.negate ? grey : 255 - grey) / 255.0;
+}
+
 /// map_server's trinary mode.
 Cell CellOf(std::uint8_t grey, const MapParams& params) {
-  const double black = (params.negate ? grey : 255 - grey) / 255.0;
+  const double black = BlackOf(grey, params);
   if (black > params.occupied_thresh) return Cell::kOccupied;
   return black < params.free_thresh ? Cell::kFree : Cell::kUnknown;
 }
@@ -105,6 +111,34 @@ void WriteFile(const fs::path& path, const std::string& text) {
   }
 }
 
+/// The usual unknown is a grey of 205, which thresholds of another map may take for free.
+void WarnOfGreyThatIsFree(const GreyImage& image, const MapParams& params,
+                          const std::string& yaml_path) {
+  constexpr double kGrey = 0.05;  // share of black; what is lighter may be a scanner's or painter's white
+  std::map<std::uint8_t, long> greys;
+  long num_cells = 0;
+  for (const std::uint8_t grey : image.pixels) {
+    const double black = BlackOf(grey, params);
+    if (black < kGrey || black >= params.free_thresh) continue;
+    ++greys[grey];
+    ++num_cells;
+  }
+  if (num_cells == 0) return;
+  const auto most = std::max_element(greys.begin(), greys.end(), [](const auto& a, const auto& b) {
+    return a.second < b.second;
+  });
+  const double black = BlackOf(most->first, params);
+  double lightest = 1.0;
+  for (const auto& [grey, count] : greys) lightest = std::min(lightest, BlackOf(grey, params));
+  const double unknown_from = std::floor(lightest * 1000.0) / 1000.0;  // rounded so that it has all unknown
+  base::Log(base::LogLevel::kWarn,
+            fmt::format("{}: {} of {} cells are grey in {} (most of them {}) and count as free, as their share of "
+                        "black, {:.3f}, lies below free_thresh {}; grey is usually unknown: free_thresh: {:.3f} "
+                        "has them so",
+                        yaml_path, num_cells, image.pixels.size(), params.image, int{most->first}, black,
+                        params.free_thresh, unknown_from));
+}
+
 }  // namespace
 
 OccupancyGrid LoadMap(const std::string& yaml_path) {
@@ -112,6 +146,7 @@ OccupancyGrid LoadMap(const std::string& yaml_path) {
   const std::string image_path = (fs::path(yaml_path).parent_path() / params.image).string();
   const std::string bytes = base::ReadTextFile(image_path, 512u << 20);
   const GreyImage image = IsPng(bytes) ? ParsePng(bytes, image_path) : ParsePgm(bytes, image_path);
+  WarnOfGreyThatIsFree(image, params, yaml_path);
   OccupancyGrid grid{params.resolution, image.width, image.height, params.origin, {}};
   grid.cells.reserve(image.pixels.size());
   for (int row = image.height - 1; row >= 0; --row) {  // images begin at the top, grids below

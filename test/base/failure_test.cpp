@@ -56,7 +56,7 @@ TEST(FailureTest, NumbersOnTheWireStayAsTheyAre) {
   EXPECT_EQ(static_cast<int>(FailureCode::kMotorsHalted), 200);
   EXPECT_EQ(static_cast<int>(FailureCode::kConditionLost), 304);
   EXPECT_EQ(static_cast<int>(FailureCode::kBadStart), 400);
-  EXPECT_EQ(AllFailures().size(), 62u);
+  EXPECT_EQ(AllFailures().size(), 63u);
 }
 
 TEST(FailureTest, UnknownWordsAndNumbersAreNoCodes) {

@@ -87,7 +87,7 @@ TEST(LoadMonitorTest, AFallIsCountedOnceWithItsCause) {
   EXPECT_GT(watched.counts.shaking, 0);
   EXPECT_GT(watched.counts.topple, 10);
   EXPECT_GT(watched.monitor.max_tilt(), 1.0);
-  EXPECT_EQ(ToString(watched.monitor.WhyNotWell()), "object_fell");
+  EXPECT_EQ(ToString(watched.monitor.WhyNotWell()), "object_fell: load0");
 }
 
 TEST(LoadMonitorTest, BrakingIsTheCauseWhenItShakesFirstThen) {
@@ -108,6 +108,15 @@ TEST(LoadMonitorTest, TheObjectThatLeansMostCounts) {
   watched.Drive(0.0, 0.0, 1.5);
   EXPECT_EQ(watched.monitor.falls(), 1);
   EXPECT_GT(watched.counts.topple, 0);
+  EXPECT_EQ(ToString(watched.monitor.WhyNotWell()), "object_fell: load0");
+}
+
+TEST(LoadMonitorTest, AllThatFellAreNamed) {
+  Watched watched({"tower", "mill", "tower"});
+  watched.Drive(0.0, 0.9, 0.6);
+  watched.Drive(0.0, 0.0, 1.5);
+  EXPECT_EQ(watched.monitor.falls(), 2);
+  EXPECT_EQ(ToString(watched.monitor.WhyNotWell()), "object_fell: load0, load2");
 }
 
 TEST(LoadMonitorTest, WhatSlidesFarEnoughHasFallen) {
@@ -118,7 +127,7 @@ TEST(LoadMonitorTest, WhatSlidesFarEnoughHasFallen) {
   Watched watched({"mill"}, {}, strict, slippery);
   watched.Drive(0.0, 0.9, 0.4);
   EXPECT_EQ(watched.monitor.falls(), 1);
-  EXPECT_EQ(ToString(watched.monitor.WhyNotWell()), "object_slid");
+  EXPECT_EQ(ToString(watched.monitor.WhyNotWell()), "object_slid: load0");
   EXPECT_LT(watched.monitor.max_tilt(), 0.1);
 }
 
@@ -218,7 +227,7 @@ TEST(LoadMonitorTest, WhatTheActionHandlesIsWatchedWhereverItStands) {
   EXPECT_TRUE(watched.monitor.watches_something());
   watched.Drive(0.0, 0.0, 0.2);
   EXPECT_EQ(watched.counts.notopple, 20);
-  EXPECT_EQ(ToString(watched.monitor.WhyNotWell()), "object_slipped") << "no hand holds it";
+  EXPECT_EQ(ToString(watched.monitor.WhyNotWell()), "object_slipped: mill1") << "no hand holds it";
 }
 
 TEST(LoadMonitorTest, WhatShouldStandOnTheTrayMustBeThere) {
@@ -227,12 +236,12 @@ TEST(LoadMonitorTest, WhatShouldStandOnTheTrayMustBeThere) {
   EXPECT_EQ(ToString(there.monitor.WhyNotWell()), "");
   Watched below =
       WithPurpose({{OnFloor("load0", "mill", 1.2)}}, Purpose::Kind::kPutOnTray, "load0");
-  EXPECT_EQ(ToString(below.monitor.WhyNotWell()), "object_fell");
+  EXPECT_EQ(ToString(below.monitor.WhyNotWell()), "object_fell: load0");
   Watched toppled = WithPurpose(Watched::LoadOf({"tower"}), Purpose::Kind::kPutOnTray, "load0");
   toppled.Drive(0.0, 0.9, 0.6);
   toppled.Drive(0.0, 0.0, 0.35);
   EXPECT_THAT(ToString(toppled.monitor.WhyNotWell()),
-              testing::AnyOf("object_toppled", "object_fell"));
+              testing::AnyOf("object_toppled: load0", "object_fell: load0"));
   EXPECT_EQ(toppled.monitor.falls(), 1);
 }
 
@@ -246,7 +255,7 @@ TEST(LoadMonitorTest, WhatWasPutDownLiesAsSoonAsTheDetectorSaysSo) {
     EXPECT_EQ(watched.monitor.Down().size(), hold_time > 0.0 ? 0u : 1u);
     return ToString(watched.monitor.WhyNotWell());
   };
-  EXPECT_EQ(why(0.0), "object_toppled");
+  EXPECT_EQ(why(0.0), "object_toppled: load0");
   EXPECT_EQ(why(10.0), "") << "it leans, but not for long";
 }
 
@@ -256,11 +265,11 @@ TEST(LoadMonitorTest, WhatShouldStandOnAnAreaMustBeThere) {
   EXPECT_EQ(ToString(there.monitor.WhyNotWell()), "");
   mill.X_MO.translation.y() += 0.2;
   Watched beside = WithPurpose({{mill}}, Purpose::Kind::kPutOnArea, "mill1");
-  EXPECT_EQ(ToString(beside.monitor.WhyNotWell()), "object_slipped");
+  EXPECT_EQ(ToString(beside.monitor.WhyNotWell()), "object_slipped: mill1");
   mill = OnFloor("mill1", "mill", 2.5);
   mill.attached_to = "tray";
   Watched held = WithPurpose({{mill}}, Purpose::Kind::kPutOnArea, "mill1");
-  EXPECT_EQ(ToString(held.monitor.WhyNotWell()), "object_not_released");
+  EXPECT_EQ(ToString(held.monitor.WhyNotWell()), "object_not_released: mill1");
 }
 
 }  // namespace

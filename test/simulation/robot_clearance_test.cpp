@@ -4,11 +4,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
+#include <utility>
 
 #include "hires/base/rng.h"
 #include "hires/geometry/angles.h"
 #include "hires/robot/robot_profile.h"
 #include "hires/simulation/scene.h"
+#include "physics/scenes.h"
 #include "support/scenes.h"
 
 namespace hires::simulation::robot_clearance_test {
@@ -146,6 +149,96 @@ TEST(RobotClearanceTest, IsTheLeastDistanceOfTheOutlinesToTheLastBit) {
     EXPECT_EQ(clearance.Clearance(X_MB, limit), least) << "case " << i;
     EXPECT_EQ(clearance.FindContact(X_MB).has_value(), least == 0.0) << "case " << i;
   }
+}
+
+/// Boxes as one mesh of all their triangles.
+geometry::Collision AsOneMesh(const std::vector<geometry::Collision>& boxes) {
+  geometry::Collision all = boxes.front();
+  auto mesh = std::make_shared<geometry::TriangleMesh>();
+  for (const geometry::Collision& box : boxes) {
+    const auto one = test_support::BoxMesh(std::get<geometry::Box>(box.shape).size);
+    const int first = static_cast<int>(mesh->vertices.size());
+    for (const Eigen::Vector3d& corner : one->vertices) mesh->vertices.push_back(box.X_BS * corner);
+    for (const auto& t : one->triangles) mesh->triangles.push_back({first + t[0], first + t[1], first + t[2]});
+  }
+  all.shape = std::shared_ptr<const geometry::TriangleMesh>(mesh);
+  all.X_BS = {};
+  return all;
+}
+
+std::vector<geometry::Collision> RandomBoxes(int count, double reach, base::Rng* rng) {
+  std::vector<geometry::Collision> boxes;
+  for (int k = 0; k < count; ++k) {
+    boxes.push_back(Shape("part", geometry::Box{{rng->Uniform(0.05, 1.0), rng->Uniform(0.05, 1.0),
+                                                 rng->Uniform(0.05, 0.6)}},
+                          {rng->Uniform(-reach, reach), rng->Uniform(-reach, reach), rng->Uniform(0.0, 1.0)}));
+    boxes.back().X_BS.rotation = Eigen::AngleAxisd(rng->Uniform(-3.0, 3.0), Eigen::Vector3d::UnitZ());
+  }
+  return boxes;
+}
+
+TEST(RobotClearanceTest, BoxesTouchTheSameAsOneMesh) {
+  base::Rng rng(17);
+  int num_touching = 0;
+  for (int i = 0; i < 60; ++i) {
+    world::StaticBody house;
+    house.name = "house";
+    house.collisions = RandomBoxes(6, 2.0, &rng);
+    world::StaticBody mesh_house = house;
+    mesh_house.collisions = {AsOneMesh(house.collisions)};
+    const std::vector<geometry::Collision> robot = RandomBoxes(3, 0.3, &rng);
+    const std::vector<geometry::Collision> mesh_robot{AsOneMesh(robot)};
+    const RobotClearance boxes(robot, WorldOf({house})), meshes(robot, WorldOf({mesh_house})),
+        own(mesh_robot, WorldOf({house})), both(mesh_robot, WorldOf({mesh_house}));
+    for (int k = 0; k < 50; ++k) {
+      const geometry::Pose2 X_MB{rng.Uniform(-3.0, 3.0), rng.Uniform(-3.0, 3.0), rng.Uniform(-3.0, 3.0)};
+      const bool touches = boxes.FindContact(X_MB).has_value();
+      num_touching += touches ? 1 : 0;
+      ASSERT_EQ(meshes.FindContact(X_MB).has_value(), touches) << i << " " << k;
+      ASSERT_EQ(own.FindContact(X_MB).has_value(), touches) << i << " " << k;
+      ASSERT_EQ(both.FindContact(X_MB).has_value(), touches) << i << " " << k;
+    }
+  }
+  EXPECT_GT(num_touching, 300);
+  EXPECT_LT(num_touching, 2700);
+}
+
+TEST(RobotClearanceTest, WhatAWallOfOneSurfaceGoesRoundIsFree) {
+  // A ring: outer square of 4 m, inner one of 3.6 m, 1 m high, 16 corners, one closed surface.
+  auto ring = std::make_shared<geometry::TriangleMesh>();
+  for (const double z : {0.0, 1.0}) {
+    for (const double half : {2.0, 1.8}) {
+      for (const auto& [x, y] : {std::pair{1, 1}, {-1, 1}, {-1, -1}, {1, -1}})
+        ring->vertices.emplace_back(x * half, y * half, z);
+    }
+  }
+  const auto quad = [&](int a, int b, int c, int d) {
+    ring->triangles.push_back({a, b, c});
+    ring->triangles.push_back({a, c, d});
+  };
+  for (int k = 0; k < 4; ++k) {
+    const int next = (k + 1) % 4;
+    quad(k, next, 8 + next, 8 + k);              // outside
+    quad(4 + next, 4 + k, 12 + k, 12 + next);    // inside
+    quad(8 + k, 8 + next, 12 + next, 12 + k);    // above
+    quad(next, k, 4 + k, 4 + next);              // below
+  }
+  world::StaticBody wall;
+  wall.name = "wall";
+  wall.collisions = {Shape("wall", std::shared_ptr<const geometry::TriangleMesh>(ring), {0, 0, 0})};
+  const RobotClearance clearance(BoxRobot(), WorldOf({wall}));
+  EXPECT_FALSE(clearance.FindContact({}));
+  EXPECT_NEAR(clearance.Clearance({}, 3.0), 1.5, 1e-6);
+  EXPECT_TRUE(clearance.FindContact({1.6, 0.0, 0.0}));
+  EXPECT_TRUE(clearance.FindContact({2.2, 0.0, 0.0}));
+  EXPECT_FALSE(clearance.FindContact({2.4, 0.0, 0.0}));
+}
+
+TEST(RobotClearanceTest, ASolidMeshCoversARobotWithinIt) {
+  world::StaticBody hall;
+  hall.name = "hall";
+  hall.collisions = {Shape("hall", test_support::BoxMesh({20.0, 20.0, 2.0}), {0.0, 0.0, 1.0})};
+  EXPECT_TRUE(RobotClearance(BoxRobot(), WorldOf({hall})).FindContact({1.0, 2.0, 0.3}));
 }
 
 TEST(RobotClearanceTest, WestOfTable2ThePr2StandsBesideChair2) {

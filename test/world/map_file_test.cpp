@@ -1,12 +1,14 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <filesystem>
 
 #include "hires/base/error.h"
 #include "hires/base/rng.h"
 #include "hires/base/text.h"
 #include "hires/world/occupancy_grid.h"
+#include "support/log_catcher.h"
 #include "world/pgm.h"
 #include "world/temp_folder.h"
 
@@ -53,6 +55,25 @@ TEST_F(MapFileTest, ThresholdsAreMapServersTrinaryOnes) {
   negated.replace(negated.find("negate: 0"), 9, "negate: 1");
   EXPECT_THAT(Load(negated).cells, ElementsAre(Cell::kFree, Cell::kUnknown, Cell::kUnknown,
                                                Cell::kOccupied, Cell::kOccupied, Cell::kOccupied));
+}
+
+TEST_F(MapFileTest, GreyThatCountsAsFreeIsWarnedOf) {
+  folder_.Write("m.pgm", "P2 4 2 255 254 254 0 205 205 205 220 250\n");
+  std::string generous = kYaml;
+  generous.replace(generous.find("0.196"), 5, "0.25");
+  {
+    const test_support::LogCatcher log(base::LogLevel::kWarn);
+    EXPECT_EQ(Load(generous).at(3, 1), Cell::kFree) << "the answer stays that of map_server";
+    ASSERT_EQ(log.lines.size(), 1u);
+    EXPECT_THAT(log.lines[0],
+                AllOf(HasSubstr("m.yaml: 4 of 8 cells are grey in m.pgm (most of them 205)"),
+                      HasSubstr("0.196, lies below free_thresh 0.25"), HasSubstr("free_thresh: 0.137")));
+  }
+  const test_support::LogCatcher log(base::LogLevel::kWarn);
+  generous.replace(generous.find("0.25"), 4, "0.137");
+  const OccupancyGrid grid = Load(generous);
+  EXPECT_TRUE(log.lines.empty());
+  EXPECT_EQ(std::count(grid.cells.begin(), grid.cells.end(), Cell::kUnknown), 4);
 }
 
 TEST_F(MapFileTest, ThePictureItselfIsNoMap) {

@@ -81,7 +81,8 @@ enum class FailureCode : std::uint16_t {
   kBadStart = 400,   ///< the drawn start cannot be
   kNoSamples = 401,  ///< there was something to watch, and nothing was sampled
   kUnfinished = 402,
-  kUnplayable = 403,  ///< no worker got it done
+  kUnplayable = 403,    ///< no worker got it done
+  kPhysicsBroke = 404,  ///< something gained energy that nothing gave it: the rollout is void
 
   kOther = 900  ///< of an action from another package; the detail tells
 };

@@ -6,6 +6,7 @@
 
 #include "hires/base/action.h"
 #include "hires/base/param_reader.h"
+#include "hires/imagination/report.h"
 #include "hires/imagination/rollout.h"
 
 namespace hires::imagination {
@@ -35,5 +36,9 @@ Validated ReadValidated(base::ParamReader in);
 std::vector<std::string> CaveatsOf(const RolloutSetup& setup,
                                    const std::vector<base::ActionCall>& actions,
                                    const Validated& validated);
+
+/// The same, after what the report already says.
+void AddCaveats(const RolloutSetup& setup, const std::vector<base::ActionCall>& actions,
+                const Validated& validated, Report* report);
 
 }  // namespace hires::imagination

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -17,9 +18,13 @@ struct RobotContact {
   std::string obstacle;    ///< static body of the world, "table1"
 };
 
+class TouchShape;
+
 /// Tells whether the robot, moving in the plane with its joints frozen, touches a static body. Each
-/// shape counts as the upright prism over its outline between its lowest and its highest point:
-/// exact for upright boxes and cylinders, never too small for anything else.
+/// shape that is no mesh counts as the upright prism over its outline between its lowest and its
+/// highest point: exact for upright boxes and cylinders, never too small for anything else. A mesh, the
+/// robot's own or an obstacle's, is where its triangles are: what a wall goes round is free, and so is
+/// what is below a table.
 class RobotClearance {
  public:
   /// @param robot_B  collision shapes in the base frame.
@@ -29,7 +34,7 @@ class RobotClearance {
   std::optional<RobotContact> FindContact(const geometry::Pose2& X_MB) const;
 
   /// Horizontal distance from the robot's nearest part to the nearest body at its height [m], at
-  /// most `limit`; 0 on contact.
+  /// most `limit`; 0 on contact. To and from meshes it is the distance in space.
   double Clearance(const geometry::Pose2& X_MB, double limit) const;
 
  private:
@@ -39,9 +44,12 @@ class RobotClearance {
     double z_min{0.0}, z_max{0.0};
     Eigen::Vector2d centre{0.0, 0.0};  // of a circle around the outline
     double radius{0.0};
+    std::shared_ptr<const TouchShape> shape;
+    geometry::Pose3 X_FS;  // in the frame of the outline
   };
   static std::optional<Prism> MakePrism(const std::string& name, const geometry::Collision& shape,
                                         const geometry::Pose3& X_WB);
+  static bool IsExact(const Prism& part, const Prism& obstacle);
   /// Calls visit(part, obstacle, distance) for all pairs of one height that may lie within `limit`.
   template <typename Visit>
   void ForNearPairs(const geometry::Pose2& X_MB, double limit, Visit visit) const;

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <set>
+
 #include "hires/base/check.h"
 #include "hires/base/text.h"
 
@@ -27,6 +29,25 @@ std::vector<std::string> NamesOf(const std::vector<base::ActionCall>& actions) {
   std::vector<std::string> names;
   for (const base::ActionCall& action : actions) names.push_back(base::ToString(action));
   return names;
+}
+
+/// Void rollouts are counted apart; as far as they go, an alternative is taken to have failed.
+void AddVoid(Report* report) {
+  int num_void = 0, num_rollouts = 0;
+  std::set<std::string> names;
+  for (const Prediction& prediction : report->ranking) {
+    num_rollouts += prediction.evidence.num_rollouts;
+    for (const auto& [failure, count] : prediction.evidence.failures) {
+      if (failure.code != base::FailureCode::kPhysicsBroke) continue;
+      num_void += count;
+      names.insert(failure.subjects.begin(), failure.subjects.end());
+    }
+  }
+  if (num_void == 0) return;
+  report->caveats.push_back(fmt::format(
+      "{} of {} rollouts are void (physics_broke): {} gained energy that nothing gave it. They count as not "
+      "succeeded, and say nothing of the robot; look at its shapes with `hires doctor`",
+      num_void, num_rollouts, base::Join(std::vector<std::string>(names.begin(), names.end()), ", ")));
 }
 
 }  // namespace
@@ -76,6 +97,7 @@ Report MakeReport(const Scheduler& scheduler, const std::vector<base::ActionCall
         "{} rollouts came twice and differed: workers that play one rollout differently",
         scheduler.num_mismatches()));
   }
+  AddVoid(&report);
   for (std::size_t place = 0; place < ranking.order.size(); ++place) {
     if (ranking.recommended == ranking.order[place]) report.recommended = static_cast<int>(place);
   }

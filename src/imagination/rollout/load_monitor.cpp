@@ -43,10 +43,11 @@ void LoadMonitor::Sort(const Purpose& purpose) {
     const bool stands_on_robot = std::count(carried.begin(), carried.end(), i) > 0;
     const bool is_held = !all[i].attached_to.empty();
     if (is_handled) handled_ = static_cast<int>(objects_.size());
+    const std::string name = base::ToLower(all[i].name);
     if (is_handled || stands_on_robot || is_held) {
-      objects_.push_back({i, stands_on_robot && !is_handled, is_held, watch});
+      objects_.push_back({i, name, stands_on_robot && !is_handled, is_held, watch});
     } else if (world::IsUpright(standing_, all[i].X_MO)) {
-      bystanders_.push_back({i, base::ToLower(all[i].name), watch});
+      bystanders_.push_back({i, name, watch});
     }
   }
 }
@@ -69,9 +70,9 @@ void LoadMonitor::Look() {
 
 void LoadMonitor::LookAt(Object* object) {
   const Fall fall = object->watch.Look(*simulator_, object->index);
-  if (!first_fall_) first_fall_ = CodeOf(*object, fall);
+  NoteFall(FailureOf(*object, fall));
   if (fall == Fall::kLost) {
-    is_lost_ = true;
+    lost_ = FailureOf(*object, fall);
     return;
   }
   tilt_ = std::max(tilt_, object->watch.detector().now().tilt);
@@ -89,10 +90,24 @@ void LoadMonitor::PutBackIfDown(Object* object) {
   object->watch.Reset();
 }
 
-Code LoadMonitor::CodeOf(const Object& object, Fall fall) const {
-  if (object.is_load) return world::CodeOf(fall, world::FallenThing::kLoad);
-  return world::CodeOf(
-      fall, IsHandled(object) ? world::FallenThing::kHandled : world::FallenThing::kHeld);
+/// Of several that fall alike, all are named.
+void LoadMonitor::NoteFall(const base::Failure& fall) {
+  if (!fall) return;
+  if (!first_fall_) first_fall_ = fall;
+  std::vector<std::string>& names = first_fall_.subjects;
+  if (fall.code != first_fall_.code || names == fall.subjects) return;
+  const auto place = std::lower_bound(names.begin(), names.end(), fall.subjects.front());
+  if (place == names.end() || *place != fall.subjects.front()) {
+    names.insert(place, fall.subjects.front());
+  }
+}
+
+base::Failure LoadMonitor::FailureOf(const Object& object, Fall fall) const {
+  if (fall == Fall::kNone) return {};
+  const world::FallenThing thing = object.is_load      ? world::FallenThing::kLoad
+                                   : IsHandled(object) ? world::FallenThing::kHandled
+                                                       : world::FallenThing::kHeld;
+  return {world::CodeOf(fall, thing), {object.name}};
 }
 
 OutcomeCounts LoadMonitor::Sample() const {
@@ -131,10 +146,9 @@ std::vector<std::string> LoadMonitor::KnockedOver() const {
 }
 
 std::vector<std::string> LoadMonitor::Down() const {
-  const std::vector<world::ObjectState> all = simulator_->GetWorldState().objects;
   std::vector<std::string> names;
   for (const Object& object : objects_) {
-    if (object.watch.detector().is_down()) names.push_back(base::ToLower(all[object.index].name));
+    if (object.watch.detector().is_down()) names.push_back(object.name);
   }
   return names;
 }
@@ -164,7 +178,8 @@ base::Failure LoadMonitor::WhyNotTaken(const Object& object) const {
   const auto hand = held.find(purpose_.arm);
   if (hand != held.end() && hand->second == object.index) return {};
   const Fall fall = object.watch.detector().fall();
-  return fall == Fall::kNone ? Code::kObjectSlipped : CodeOf(object, fall);
+  if (fall == Fall::kNone) return {Code::kObjectSlipped, {object.name}};
+  return FailureOf(object, fall);
 }
 
 /// Where the object was to be put: the frame of the area, or the middle of the tray.
@@ -181,19 +196,23 @@ Eigen::AlignedBox2d LoadMonitor::ExtentOfGoal() const {
 }
 
 base::Failure LoadMonitor::WhyNotStanding(const Object& object) const {
-  if (IsHeld(object)) return Code::kObjectNotReleased;
+  if (IsHeld(object)) return {Code::kObjectNotReleased, {object.name}};
   const Fall fall = object.watch.detector().fall();
-  if (fall != Fall::kNone) return CodeOf(object, fall);
+  if (fall != Fall::kNone) return FailureOf(object, fall);
   const Eigen::Vector3d p_GO = (X_MGoal().Inverse() * simulator_->PoseOf(object.index)).translation;
-  if (p_GO.z() < -standing_.drop) return Code::kObjectFell;  // it stands on something lower
+  if (p_GO.z() < -standing_.drop) {  // it stands on something lower
+    return {Code::kObjectFell, {object.name}};
+  }
   const bool is_there = ExtentOfGoal().contains(p_GO.head<2>().eval());
-  return is_there ? base::Failure() : Code::kObjectSlipped;
+  return is_there ? base::Failure() : base::Failure(Code::kObjectSlipped, {object.name});
 }
 
 base::Failure LoadMonitor::WhyNotHeldAnyMore() const {
   for (int i = 0; i < static_cast<int>(objects_.size()); ++i) {
     const Object& object = objects_[i];
-    if (i != handled_ && object.was_held && !IsHeld(object)) return Code::kObjectSlipped;
+    if (i != handled_ && object.was_held && !IsHeld(object)) {
+      return {Code::kObjectSlipped, {object.name}};
+    }
   }
   return {};
 }

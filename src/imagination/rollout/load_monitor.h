@@ -40,7 +40,8 @@ class LoadMonitor {
   double max_tilt() const { return max_tilt_; }  ///< [rad]
   /// Objects that fell over, slid off the robot, or were knocked over (see KnockedOver).
   int falls() const { return falls_; }
-  bool is_lost() const { return is_lost_; }  ///< physics gave an object a pose that is not finite
+  bool is_lost() const { return bool(lost_); }  ///< physics gave an object a pose that is not finite
+  const base::Failure& why_lost() const { return lost_; }  ///< which, or nothing
   const std::string& first_cause() const { return first_cause_; }
 
   /// Nothing of concern is on the way to falling or standing still again, and no bystander that
@@ -48,7 +49,7 @@ class LoadMonitor {
   bool IsSettled() const;
 
   /// Looks at how things are now that the action says it has reached its goal: the first of these
-  /// that is not well, or nothing.
+  /// that is not well, with the names of whom it happened to, or nothing.
   ///   object_fell       what was taken or put down fell from its place or stands lower than it
   ///                     should, or what stood on the robot fell over or down
   ///   object_toppled    what was taken or put down lies where it should stand
@@ -69,8 +70,9 @@ class LoadMonitor {
  private:
   struct Object {
     int index;
-    bool is_load;   // stands on the robot and is not to be taken from there
-    bool was_held;  // at the start
+    std::string name;  // lower case
+    bool is_load;      // stands on the robot and is not to be taken from there
+    bool was_held;     // at the start
     simulation::FallWatch watch;
   };
   struct Bystander {
@@ -80,12 +82,13 @@ class LoadMonitor {
   };
   void Sort(const Purpose& purpose);
   void LookAt(Object* object);
+  void NoteFall(const base::Failure& fall);
   void PutBackIfDown(Object* object);
   bool IsHeld(const Object& object) const;
   bool Shakes(const Object& object) const;
   bool IsHandled(const Object& object) const;
   bool Moves(int index) const;
-  base::FailureCode CodeOf(const Object& object, world::Fall fall) const;
+  base::Failure FailureOf(const Object& object, world::Fall fall) const;
   base::Failure WhyNotTaken(const Object& object) const;
   base::Failure WhyNotStanding(const Object& object) const;
   base::Failure WhyHandledIsNotWell() const;
@@ -102,8 +105,8 @@ class LoadMonitor {
   int handled_{-1};  // in objects_
   double tilt_{0.0}, max_tilt_{0.0};
   int falls_{0};
-  bool is_lost_{false};
-  base::Failure first_fall_;
+  base::Failure lost_;
+  base::Failure first_fall_;  // and all that fell like the first
   std::string first_cause_;
 };
 

@@ -76,7 +76,8 @@ class Player {
         if (hooks.cancelled && hooks.cancelled()) return std::nullopt;
       }
       if (simulator_.contact()) status = skills::Failed(Collision());
-      if (monitor.is_lost()) status = skills::Failed(Code::kObjectLost);
+      if (monitor.is_lost()) status = skills::Failed(monitor.why_lost());
+      if (simulator_.broken_object()) status = skills::Failed(Code::kPhysicsBroke);
       if (elapsed >= params_.time_limit) status = skills::Failed(Code::kTimedOut);
     }
     result_.duration = simulator_.time() - start;
@@ -172,6 +173,12 @@ class Player {
       result_.failure = Code::kNoSamples;
     }
     result_.falls = monitor.falls();
+    if (const std::optional<int> broken = simulator_.broken_object()) {
+      const std::string& name = simulator_.GetWorldState().objects.at(*broken).name;
+      result_.failure = {Code::kPhysicsBroke, {name}, name + " gained energy that nothing gave it"};
+      result_.outcome = Outcome::kFailed;
+      result_.falls = 0;  // what moved it was no drive
+    }
     result_.max_tilt = monitor.max_tilt();
     result_.first_cause = monitor.first_cause();
     result_.final_world = simulator_.GetWorldState();

@@ -457,8 +457,7 @@ ImagineAgain MakeLocalImagination(const std::string& package_folder,
     }
     imagination::Report report = imagination::ImagineLocally(
         request->setup, request->actions, request->params, num_threads, on_interim, cancelled);
-    report.caveats =
-        imagination::CaveatsOf(request->setup, request->actions, loaded->config.validated);
+    imagination::AddCaveats(request->setup, request->actions, loaded->config.validated, &report);
     return AnswerTo(goal, *request, loaded->setup, report);
   };
 }

@@ -364,10 +364,7 @@ void ImaginationClientNode::Finish(Session* session) {
   auto report =
       imagination::MakeReport(*session->scheduler, request.actions, request.setup.seed,
                               hires::base::SteadyNow() - session->begun, session->from_kept);
-  for (std::string& caveat :
-       imagination::CaveatsOf(request.setup, request.actions, params_.config.validated)) {
-    report.caveats.push_back(std::move(caveat));
-  }
+  imagination::AddCaveats(request.setup, request.actions, params_.config.validated, &report);
   const hires::ImagineResult result = AnswerTo(*session->goal.getGoal(), request, setup_, report);
   replayer_.Keep({session->goal.getGoal()->request_id, session->id, session->request,
                   report.ranking, result.predictions});

@@ -25,7 +25,7 @@ imagination::Report ImagineInThisProcess(const ImagineQuery& query, QueryScene* 
   RequireObjects(rollouts.skills->actions->catalogue(), actions, rollouts.world_state);
   imagination::Report report = imagination::ImagineLocally(rollouts, actions, query.scheduler,
                                                            query.threads, on_interim, cancelled);
-  report.caveats = imagination::CaveatsOf(rollouts, actions, query.validated);
+  imagination::AddCaveats(rollouts, actions, query.validated, &report);
   return report;
 }
 
