@@ -226,7 +226,7 @@ def declared_dependencies(root):
             words = arguments.split()
             name = {"layer": words[0], "room": "/".join(words[:2]), "node": f"nodes/{words[0]}"}[kind]
             after = words[words.index("DEPENDS") + 1:] if "DEPENDS" in words else []
-            ends = [i for i, word in enumerate(after) if re.fullmatch("[A-Z]{3,}", word)]
+            ends = [i for i, word in enumerate(after) if re.fullmatch("[A-Z_]{3,}", word)]
             declared[name] = after[:ends[0]] if ends else after
     return declared
 
@@ -639,7 +639,7 @@ FAILURE_TABLE = "src/base/failure.cpp"
 # Words that mean something else beside a failure, and where. Elsewhere base::FailureCode says it.
 ALSO_MEANS = {
     "imagined_failure": {  # a predicate of the planner
-        "src/execution/exclusions.cpp", "src/knowledge/views/state_view_rules.cpp",
+        "src/execution/exclusions.cpp", "src/knowledge/state/state_view_rules.cpp",
         "src/planning/search/operator_applier.cpp", "src/planning/check/step_replay.cpp",
         "src/translation/wanted_state.cpp"},
     "motors_halted": {  # a key of a robot's names, a finding of the doctor

@@ -7,7 +7,7 @@
 
 #include "hires/base/error.h"
 #include "hires/base/text.h"
-#include "knowledge/views/live_view_match.h"
+#include "knowledge/state/live_view_match.h"
 
 namespace hires::knowledge {
 namespace {

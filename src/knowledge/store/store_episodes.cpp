@@ -8,7 +8,7 @@
 #include <cmath>
 
 #include "hires/base/error.h"
-#include "knowledge/store/store_check.h"
+#include "knowledge/fluents/store_check.h"
 
 namespace hires::knowledge {
 namespace {

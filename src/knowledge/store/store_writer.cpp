@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "hires/base/error.h"
-#include "knowledge/store/store_check.h"
+#include "knowledge/fluents/store_check.h"
 #include "knowledge/store/store_codec.h"
 
 namespace hires::knowledge {

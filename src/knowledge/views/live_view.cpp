@@ -8,7 +8,7 @@
 #include <utility>
 
 #include "hires/base/text.h"
-#include "knowledge/views/live_view_match.h"
+#include "knowledge/state/live_view_match.h"
 
 namespace hires::knowledge {
 

@@ -8,7 +8,7 @@
 #include "hires/base/error.h"
 #include "hires/base/text.h"
 #include "hires/temporal/interval.h"
-#include "knowledge/store/store_check.h"
+#include "knowledge/fluents/store_check.h"
 #include "knowledge/yaml/fluent_yaml_text.h"
 
 namespace hires::knowledge {

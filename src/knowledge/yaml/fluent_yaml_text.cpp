@@ -6,7 +6,7 @@
 #include <boost/locale/utf.hpp>
 
 #include "hires/base/error.h"
-#include "knowledge/store/store_check.h"
+#include "knowledge/fluents/store_check.h"
 
 namespace hires::knowledge {
 namespace {

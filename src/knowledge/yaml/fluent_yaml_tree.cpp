@@ -9,7 +9,7 @@
 #include <unordered_map>
 
 #include "hires/base/error.h"
-#include "knowledge/store/store_check.h"
+#include "knowledge/fluents/store_check.h"
 #include "knowledge/yaml/fluent_yaml_text.h"
 
 namespace hires::knowledge {

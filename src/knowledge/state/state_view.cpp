@@ -9,8 +9,8 @@
 
 #include "hires/base/error.h"
 #include "hires/base/text.h"
-#include "knowledge/views/live_view_match.h"
-#include "knowledge/views/state_view_rules.h"
+#include "knowledge/state/live_view_match.h"
+#include "knowledge/state/state_view_rules.h"
 
 namespace hires::knowledge {
 namespace {

@@ -1,4 +1,4 @@
-#include "simulation/touch_shape.h"
+#include "simulation/clearance/touch_shape.h"
 
 #include <fcl/geometry/bvh/BVH_model.h>
 #include <fcl/geometry/shape/box.h>

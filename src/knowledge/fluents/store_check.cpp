@@ -1,4 +1,4 @@
-#include "knowledge/store/store_check.h"
+#include "knowledge/fluents/store_check.h"
 
 #include <fmt/format.h>
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "simulation/touch_shape.h"
+#include "simulation/clearance/touch_shape.h"
 
 namespace hires::simulation {
 namespace {

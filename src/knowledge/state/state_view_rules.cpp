@@ -1,4 +1,4 @@
-#include "knowledge/views/state_view_rules.h"
+#include "knowledge/state/state_view_rules.h"
 
 #include <fmt/format.h>
 
@@ -9,7 +9,7 @@
 #include "hires/base/check.h"
 #include "hires/base/error.h"
 #include "hires/base/text.h"
-#include "knowledge/views/live_view_match.h"
+#include "knowledge/state/live_view_match.h"
 
 namespace hires::knowledge {
 namespace {

@@ -1,4 +1,4 @@
-#include "knowledge/views/live_view_match.h"
+#include "knowledge/state/live_view_match.h"
 
 #include <algorithm>
 #include <cstdint>
