@@ -11,9 +11,6 @@ namespace {
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
-/// A face is preferred to a pair of edges by this much [m], so that a box near the border of a plate
-/// stands on the plate.
-constexpr double kFacePreference = 1e-3;
 /// A face of A takes the place of B's only if its way out is shorter by this much [m]: rounding does
 /// not choose.
 constexpr double kSameFace = 1e-6;

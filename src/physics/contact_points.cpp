@@ -19,9 +19,6 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 /// Below this sine of the tilt, heights along the rim differ by less than a nanometre or so and its
 /// lowest point means nothing.
 constexpr double kUpright = 1e-8;
-/// A face is preferred to an edge by this much [m], so that a body standing near the border of a
-/// plate stands on the plate.
-constexpr double kFacePreference = 1e-3;
 /// Points of the rim that are closer together than this (cosine of the angle) count as one.
 constexpr double kSamePoint = 0.9986;
 

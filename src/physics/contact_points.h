@@ -75,6 +75,10 @@ FlatFace FloorFace();
 void AddCylinderOnFace(const PlacedCylinder& cylinder, const FlatFace& face,
                        const Eigen::Vector3d& lean, ContactList* contacts);
 
+/// A face is preferred to an edge by this much [m], so that a body standing near the border of a
+/// plate stands on the plate.
+inline constexpr double kFacePreference = 1e-3;
+
 /// What the quick look at two shapes says.
 enum class QuickLook {
   kApart,      ///< they do not touch

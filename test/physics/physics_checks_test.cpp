@@ -35,6 +35,14 @@ TEST(PhysicsChecksTest, MillOfTheRepositoryObeysTheory) {
   ExpectAllPass({0.037, 0.274, 0.350}, "mill of the repository");
 }
 
+TEST(PhysicsChecksTest, EveryShapeRestsOnEveryPlateAndABoxTipsAsTheorySays) {
+  PhysicsWorld::TakeSolverMessages();
+  for (const PhysicsCheck& check : RunShapeChecks()) {
+    EXPECT_TRUE(check.passed()) << check.name << ": measured " << check.measured << " " << check.unit;
+  }
+  EXPECT_TRUE(PhysicsWorld::TakeSolverMessages().empty());
+}
+
 TEST(PhysicsChecksTest, ErrorBeyondToleranceFails) {
   PhysicsCheck check;
   check.tolerance = 0.01;

@@ -18,7 +18,6 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr int kApplication = 0x48455850;  // "HEXP": what kind of SQLite file it is
-constexpr int kBusyTimeout = 5000;        // [ms]
 constexpr std::size_t kNumbers = 17;
 using Numbers = std::array<float, kNumbers>;
 

@@ -9,6 +9,8 @@
 
 namespace hires::knowledge {
 
+inline constexpr int kBusyTimeout = 5000;  ///< [ms] how long SQLite tries before it says "busy"
+
 /// What SQLite reported about the store at `path`, in words that say what to do.
 base::ConfigError StoreError(const std::string& path, const SQLite::Exception& error);
 

@@ -13,7 +13,6 @@
 namespace hires::knowledge {
 namespace {
 
-constexpr int kBusyTimeout = 5000;           // [ms] how long SQLite tries before it says "busy"
 constexpr int kLogPages = 8000;              // [4 KiB] of the log before it goes into the file
 constexpr int kLogBytes = kLogPages * 4096;  // to which a longer log is cut back
 

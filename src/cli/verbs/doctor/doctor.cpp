@@ -68,6 +68,20 @@ ordered_json ToJson(const physics::PhysicsCheck& check) {
           {"passed", check.passed()}, {"remark", check.remark}};
 }
 
+void ShowChecks(const std::string& body, const std::vector<physics::PhysicsCheck>& checks,
+                Findings* findings) {
+  std::vector<std::vector<std::string>> rows{
+      {"", "check", "closed form", "measured", "unit", "error", "allowed", "remark"}};
+  ordered_json list = ordered_json::array();
+  for (const physics::PhysicsCheck& check : checks) {
+    findings->passed = findings->passed && check.passed();
+    rows.push_back(RowOf(check));
+    list.push_back(ToJson(check));
+  }
+  std::cout << '\n' << reports::FormatTable(rows) << std::flush;
+  findings->physics.push_back({{"body", body}, {"checks", list}});
+}
+
 void CheckPhysics(Findings* findings) {
   const struct {
     const char* name;
@@ -76,17 +90,9 @@ void CheckPhysics(Findings* findings) {
                {"pepper mill, appendix", {0.035, 0.300, 0.500}},
                {"pepper mill, repository", {0.037, 0.274, 0.350}}};
   for (const auto& mill : mills) {
-    std::vector<std::vector<std::string>> rows{
-        {"", "check", "closed form", "measured", "unit", "error", "allowed", "remark"}};
-    ordered_json checks = ordered_json::array();
-    for (const physics::PhysicsCheck& check : physics::RunPhysicsChecks(mill.body, mill.name)) {
-      findings->passed = findings->passed && check.passed();
-      rows.push_back(RowOf(check));
-      checks.push_back(ToJson(check));
-    }
-    std::cout << '\n' << reports::FormatTable(rows) << std::flush;
-    findings->physics.push_back({{"body", mill.name}, {"checks", checks}});
+    ShowChecks(mill.name, physics::RunPhysicsChecks(mill.body, mill.name), findings);
   }
+  ShowChecks("every shape", physics::RunShapeChecks(), findings);
 }
 
 int CheckAll(const DoctorBackends& backends, bool with_physics, const ReportOptions& report) {

@@ -8,6 +8,7 @@
 #include <chrono>
 #include <filesystem>
 #include <iostream>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <set>
 #include <thread>
@@ -80,11 +81,27 @@ std::vector<std::string> AlternativesOf(const std::string& list) {
   return alternatives;
 }
 
+/// What was typed as a file is loaded, and called by its name.
+void NameObjects(imagination::SetupConfig* setup, ImagineStart* start) {
+  std::map<std::string, std::string> names;  // by what was typed: a file is loaded once
+  const auto name_of = [&](const std::string& object) {
+    const auto [entry, is_new] = names.emplace(object, "");
+    if (is_new) entry->second = NameOf(object, setup);
+    return entry->second;
+  };
+  for (std::string& object : start->on_tray) object = name_of(object);
+  for (imagination::PutObject& put : start->put) put.object = name_of(put.object);
+  for (base::Atom& atom : start->atoms) {
+    if (atom.predicate == "On") atom.arguments[0] = name_of(atom.arguments[0]);
+    if (atom.predicate == "Holding") atom.arguments[1] = name_of(atom.arguments[1]);
+  }
+}
+
 void SetStart(const ImagineOptions& o, ImagineQuery* query) {
   query->setup.action_libraries = o.action_libraries;
   query->start =
       ReadStart(o.start, o.action, skills::LoadActionSet(o.action_libraries)->catalogue());
-  for (std::string& object : query->start.on_tray) object = NameOf(object, &query->setup);
+  NameObjects(&query->setup, &query->start);
 }
 
 void SetSensing(const ImagineOptions& o, imagination::SetupConfig* setup) {

@@ -133,12 +133,13 @@ void AddStartOptions(CLI::App* app, StartOptions* o) {
                   "what stands on its tray: instance, model, or file (.sdf, .urdf, .yaml); up to "
                   "three times")
       ->allow_extra_args(false);
-  app->add_option("--object-in-hand", o->in_hand, "OBJECT:ARM, what an arm holds: mug1:rightArm1")
+  app->add_option("--object-in-hand", o->in_hand,
+                  "OBJECT:ARM, what an arm holds, named as for --object: mug1:rightArm1")
       ->allow_extra_args(false);
   app->add_option("--posture", o->postures,
                   "ARM:POSTURE or torso1:POSTURE; the driving posture where none is given")
       ->allow_extra_args(false);
-  app->add_option("--put", o->put, std::string("what stands about: ") + kPutWanted)
+  app->add_option("--put", o->put, std::string("what stands about, named as for --object: ") + kPutWanted)
       ->allow_extra_args(false);
 }
 
