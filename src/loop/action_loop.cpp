@@ -9,14 +9,13 @@
 namespace hires::loop {
 namespace {
 
-constexpr double kStart = 1.0;      // [s] of the clock
 constexpr double kFirstLook = 0.5;  // [s] until all sensors have spoken
 constexpr int kActivity = 1;
 
 /// Robot and middle layer, wired.
-class Play {
+class ActionPlay {
  public:
-  Play(const LoopSetup::Parts& parts, const ActionOrder& order)
+  ActionPlay(const LoopSetup::Parts& parts, const ActionOrder& order)
       : order_(order),
         aftermath_(parts.world.rollout.aftermath),
         clock_(kStart),
@@ -68,7 +67,7 @@ class Play {
 
 std::optional<ActionRun> PlayAction(const LoopSetup& setup, const ActionOrder& order,
                                     const std::function<bool()>& cancelled) {
-  return Play(setup.parts(), order).Run(cancelled);
+  return ActionPlay(setup.parts(), order).Run(cancelled);
 }
 
 }  // namespace hires::loop

@@ -16,8 +16,7 @@
 namespace hires::loop {
 namespace {
 
-constexpr double kStart = 1.0;         // [s] of the clock
-constexpr double kFirstLook = 1.0;     // [s] until what is observed at first has been told
+constexpr double kAllTold = 1.0;       // [s] until what is observed at first has been told
 constexpr double kFarewell = 2.0;      // [s] in which all comes to rest after the end
 constexpr double kStatusPeriod = 0.2;  // [s]
 enum LineStreams : std::uint64_t {
@@ -70,9 +69,9 @@ struct Lines {
 };
 
 /// All parts of one task, wired.
-class Play {
+class TaskPlay {
  public:
-  Play(const LoopSetup::Parts& parts, const LoopOrder& order, const sim_robot::Scenario& scenario,
+  TaskPlay(const LoopSetup::Parts& parts, const LoopOrder& order, const sim_robot::Scenario& scenario,
        const LoopObserver& observer)
       : observer_(observer),
         order_(Completed(order, scenario, parts)),
@@ -197,7 +196,7 @@ class Play {
 
   void OnObservedUntil(double time) {
     monitor_.OnObservedUntil(time);
-    if (monitor_.has_begun() || clock_.now() < kStart + kFirstLook) return;
+    if (monitor_.has_begun() || clock_.now() < kStart + kAllTold) return;
     monitor_.Begin();
     tracker_.SetEpisode(monitor_.episode());
   }
@@ -235,7 +234,7 @@ LoopRun PlayTask(const LoopSetup& setup, const LoopOrder& order, const OnAchieve
   for (const auto& misfit : sim_robot::NamesThatDoNotFit(scenario, order.scenario, task)) {
     base::Log(base::LogLevel::kWarn, misfit);
   }
-  return Play(setup.parts(), order, scenario, observer).Run(on_status, cancelled);
+  return TaskPlay(setup.parts(), order, scenario, observer).Run(on_status, cancelled);
 }
 
 }  // namespace hires::loop

@@ -7,6 +7,8 @@
 
 namespace hires::loop {
 
+constexpr double kStart = 1.0;  ///< [s] of a loop's clock
+
 /// Time that passes as fast as what happens in it can be worked out. What is due is done in the
 /// order of its time, and where that is the same in the order in which it was asked for.
 class VirtualClock {
