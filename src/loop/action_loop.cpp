@@ -5,6 +5,7 @@
 #include "loop/loop_parts.h"
 #include "loop/middle_layer.h"
 #include "loop/robot_side.h"
+#include "loop/virtual_clock.h"
 
 namespace hires::loop {
 namespace {

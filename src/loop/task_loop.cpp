@@ -10,6 +10,7 @@
 #include "loop/monitor_shell.h"
 #include "loop/robot_side.h"
 #include "loop/task_names.h"
+#include "loop/virtual_clock.h"
 #include "sim_robot/scenario.h"
 #include "sim_robot/scenario_names.h"
 
