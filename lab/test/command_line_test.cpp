@@ -19,7 +19,7 @@ TEST(LabCommandLineTest, HelpNamesTheVerbs) {
   const auto ended = RunLab({"--help"});
   EXPECT_EQ(ended.code, 0);
   EXPECT_THAT(ended.out, AllOf(HasSubstr("experiment"), HasSubstr("scenarios"),
-                               HasSubstr("experiences"), HasSubstr("reproduce")));
+                               HasSubstr("experiences"), HasSubstr("reproduce"), HasSubstr("publish")));
 }
 
 TEST(LabCommandLineTest, VerbsThatProgramsCallAreNotShown) {

@@ -8,6 +8,7 @@
 #include "lab/src/decision/decision.h"
 #include "lab/src/experiment/experiment.h"
 #include "lab/src/experiment/hypothesis.h"
+#include "lab/src/publish/publish_catalogue.h"
 #include "lab/src/reproduce/catalogue.h"
 #include "lab/src/series/scenario_series.h"
 
@@ -23,8 +24,8 @@ const std::map<std::string, Reader>& Readers() {
   static const std::map<std::string, Reader> readers{
       {"decision.yaml", [](const std::string& path) { ReadDecisionConfig(path); }},
       {"faults.txt", [](const std::string&) {}},  // lab/scripts/faults reads it: faults_test.py
+      {"publish.yaml", [](const std::string& path) { ReadPublishCatalogue(path); }},
       {"reproduce.yaml", [](const std::string& path) { ReadCatalogue(path); }},
-      {"reproduce_docs.yaml", [](const std::string& path) { ReadCatalogue(path); }},
       {"series", [](const std::string& path) { ReadScenarioSeries(path); }},
       {"experiments",
        [](const std::string& path) {

@@ -69,7 +69,7 @@ TEST_F(ReproduceTest, WhatHasAnAnswerIsNotPlayedAgain) {
   PlayThem(plays, true);
   EXPECT_EQ(Counted(), "xx");
   folder_.Write("package/lab/config/reproduce.yaml", "plays: [1]\n");
-  folder_.Write("package/lab/config/reproduce_docs.yaml", "plays: [2]\n");
+  folder_.Write("package/lab/config/publish.yaml", "plays: [2]\n");
   PlayThem(plays);
   EXPECT_EQ(Counted(), "xx") << "other bounds ask for no other answer";
   folder_.Write("package/input.yaml", "# of today\na:  1\n");
@@ -87,6 +87,17 @@ TEST_F(ReproduceTest, AnAnswerOfAnotherBuildSaysSo) {
   other.KeyOf(play);
   ASSERT_TRUE(other.Find(play));
   EXPECT_EQ(other.Find(play)->build, "b1");
+}
+
+TEST_F(ReproduceTest, AnAnswerKnowsItsDayOrIsPlayedAgain) {
+  const Play play = Shell("one", "echo 1 > {answer}");
+  EXPECT_THAT(PlayThem({play}).answers.at("one").date,
+              ::testing::MatchesRegex("[0-9]{4}-[0-9]{2}-[0-9]{2}"));
+  PlayStore store = Store();
+  folder_.Write("results/one-" + store.KeyOf(play) + "/played.json",
+                R"({"build": "b1", "wall_seconds": 1})");
+  EXPECT_FALSE(store.Find(play));
+  EXPECT_TRUE(PlayThem({play}).answers.at("one").is_new);
 }
 
 TEST_F(ReproduceTest, APlayThatFailsIsToldAndTheOthersGoOn) {

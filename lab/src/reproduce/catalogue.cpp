@@ -7,7 +7,6 @@
 #include <map>
 #include <optional>
 #include <set>
-#include <sstream>
 
 #include "hires/base/error.h"
 #include "hires/base/param_reader.h"
@@ -17,63 +16,7 @@
 namespace hires::lab {
 namespace {
 
-constexpr double kLongest = 86400.0;  // [s]
 constexpr double kLargest = 1e12;
-
-std::vector<std::string> Words(const std::string& text) {
-  std::istringstream in(text);
-  std::vector<std::string> words;
-  for (std::string word; in >> word;) words.push_back(word);
-  return words;
-}
-
-/// The names between braces of a word; other text between braces is no placeholder.
-std::vector<std::string> PlaceholdersIn(const std::string& word) {
-  std::vector<std::string> names;
-  for (std::size_t begin = word.find('{'); begin != std::string::npos;
-       begin = word.find('{', begin + 1)) {
-    const std::size_t end = word.find('}', begin);
-    if (end == std::string::npos) break;
-    const std::string name = word.substr(begin + 1, end - begin - 1);
-    const bool is_name =
-        name.find_first_not_of("abcdefghijklmnopqrstuvwxyz0123456789_/") == std::string::npos;
-    if (is_name && !name.empty()) names.push_back(name);
-  }
-  return names;
-}
-
-/// The play of a placeholder such as {durations} or {durations/folder}.
-std::string PlayIn(const std::string& placeholder) {
-  return placeholder.substr(0, placeholder.find('/'));
-}
-
-bool IsOwn(const std::string& placeholder) {
-  return placeholder == "package" || placeholder == "answer" || placeholder == "folder";
-}
-
-Play ReadPlay(base::ParamReader in) {
-  Play play;
-  play.name = in.GetString("name");
-  play.command = Words(in.GetString("command"));
-  play.inputs = in.GetStrings("inputs");
-  play.seconds = in.Get("seconds", base::Between(0.0, kLongest));
-  play.done_codes = {0};
-  if (in.Has("done_codes")) {
-    play.done_codes.clear();
-    for (const std::string& code : in.GetStrings("done_codes")) {
-      if (code.empty() || code.size() > 3 ||
-          code.find_first_not_of("0123456789") != std::string::npos) {
-        in.Fail("done_codes", fmt::format("has '{}'; wanted exit codes, 0 .. 255", code));
-      }
-      play.done_codes.push_back(std::stoi(code));
-    }
-  }
-  const bool writes = std::any_of(
-      play.command.begin(), play.command.end(),
-      [](const std::string& word) { return word.find("{answer}") != std::string::npos; });
-  if (!writes) in.Fail("command", "which writes no answer; wanted --json {answer} in it");
-  return play;
-}
 
 Acceptance ReadAcceptance(base::ParamReader* in, bool is_published) {
   using Kind = Acceptance::Kind;
@@ -192,21 +135,6 @@ CatalogueItem ReadItem(base::ParamReader in) {
   return item;
 }
 
-const Play* Find(const std::vector<Play>& plays, const std::string& name) {
-  const auto found =
-      std::find_if(plays.begin(), plays.end(), [&](const Play& play) { return play.name == name; });
-  return found == plays.end() ? nullptr : &*found;
-}
-
-void RequirePlay(const std::string& path, const Catalogue& catalogue, const std::string& who,
-                 const std::string& name) {
-  if (Find(catalogue.plays, name) != nullptr) return;
-  std::vector<std::string> known;
-  for (const Play& play : catalogue.plays) known.push_back(play.name);
-  throw base::ConfigError(
-      fmt::format("{}: {}: {}", path, who, base::UnknownName("play", name, known)));
-}
-
 void CheckNames(const std::string& path, const Catalogue& catalogue) {
   std::set<std::string> names;
   const auto take = [&](const std::string& kind, const std::string& name) {
@@ -220,32 +148,20 @@ void CheckNames(const std::string& path, const Catalogue& catalogue) {
   for (const CatalogueItem& item : catalogue.items) take("item", item.name);
 }
 
-/// Appends a play after those whose answers it takes.
-void Append(const Catalogue& catalogue, const Play& play, std::vector<std::string> path,
-            std::vector<Play>* order) {
-  if (Find(*order, play.name) != nullptr) return;
-  if (std::count(path.begin(), path.end(), play.name) > 0) {
-    throw base::ConfigError(fmt::format("plays need each other's answers in a circle: {} -> {}",
-                                        base::Join(path, " -> "), play.name));
-  }
-  path.push_back(play.name);
-  for (const std::string& name : NeededBy(play)) {
-    Append(catalogue, *Find(catalogue.plays, name), path, order);
-  }
-  order->push_back(play);
-}
-
 void CheckPlays(const std::string& path, const Catalogue& catalogue) {
   for (const Play& play : catalogue.plays) {
     for (const std::string& name : NeededBy(play)) {
-      RequirePlay(path, catalogue, "play " + play.name, name);
+      RequirePlay(path + ": play " + play.name, catalogue.plays, name);
     }
   }
   for (const CatalogueItem& item : catalogue.items) {
-    for (const std::string& name : item.plays) RequirePlay(path, catalogue, item.name, name);
+    for (const std::string& name : item.plays) {
+      RequirePlay(path + ": " + item.name, catalogue.plays, name);
+    }
   }
-  std::vector<Play> order;
-  for (const Play& play : catalogue.plays) Append(catalogue, play, {}, &order);
+  std::vector<std::string> all;
+  for (const Play& play : catalogue.plays) all.push_back(play.name);
+  InOrder(catalogue.plays, all);
 }
 
 /// "6.3.2" lies below "6.3", below "6" and is itself.
@@ -275,7 +191,7 @@ std::optional<std::string> KindOf(std::string word) {
 /// As the catalogue writes it: "Fig. 6.5" for "figure 6.5", "6.1" for "section 6.1", "A" for
 /// "appendix A".
 std::string AsCatalogued(const std::string& wanted) {
-  const std::vector<std::string> words = Words(wanted);
+  const std::vector<std::string> words = WordsIn(wanted);
   const auto kind = words.size() == 2 ? KindOf(words[0]) : std::nullopt;
   if (!kind) return wanted;
   return kind->empty() ? words[1] : *kind + " " + words[1];
@@ -318,18 +234,6 @@ std::vector<std::string> NamesOf(const Catalogue& catalogue, const std::string& 
 
 }  // namespace
 
-std::string ToString(const AnswerField& field) { return field.play + ":" + field.pointer; }
-
-std::vector<std::string> NeededBy(const Play& play) {
-  std::vector<std::string> needed;
-  for (const std::string& word : play.command) {
-    for (const std::string& name : PlaceholdersIn(word)) {
-      if (!IsOwn(name)) needed.push_back(PlayIn(name));
-    }
-  }
-  return needed;
-}
-
 Catalogue ReadCatalogue(const std::string& path) {
   base::ParamReader in = base::ParamReader::FromFile(path);
   Catalogue catalogue;
@@ -354,20 +258,14 @@ std::vector<CatalogueItem> ItemsOf(const Catalogue& catalogue,
 }
 
 std::vector<Play> PlaysFor(const Catalogue& catalogue, const std::vector<CatalogueItem>& items) {
-  std::vector<Play> order;
+  std::vector<std::string> shown;
   for (const Play& play : catalogue.plays) {
     const bool is_shown = std::any_of(items.begin(), items.end(), [&](const CatalogueItem& item) {
       return std::count(item.plays.begin(), item.plays.end(), play.name) > 0;
     });
-    if (is_shown) Append(catalogue, play, {}, &order);
+    if (is_shown) shown.push_back(play.name);
   }
-  return order;
-}
-
-std::string ProgramNameOf(const Play& play) {
-  static const std::set<std::string> kLabVerbs{"experiment", "experiences", "scenarios"};
-  const bool is_of_lab = !play.command.empty() && kLabVerbs.count(play.command.front()) > 0;
-  return is_of_lab ? "hires_lab" : "hires";
+  return InOrder(catalogue.plays, shown);
 }
 
 }  // namespace hires::lab

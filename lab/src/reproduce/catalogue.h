@@ -4,21 +4,10 @@
 #include <string>
 #include <vector>
 
-namespace hires::lab {
+#include "lab/src/reproduce/answer_field.h"
+#include "lab/src/reproduce/play.h"
 
-/// One call of `hires` whose answer holds results of the dissertation.
-struct Play {
-  std::string name;
-  /// Behind `hires`. {package}: folder of config/, worlds/, urdf/; {answer}: the JSON file to
-  /// write; {folder}: one of its own, for journals; {other} and {other/folder}: answer and folder
-  /// of the play of that name, which then is played before.
-  std::vector<std::string> command;
-  std::vector<std::string> inputs;  ///< files and folders below {package} that it depends on
-  double seconds{0.0};              ///< [s] wall time on two cores, to foretell how long it takes
-  std::vector<int> done_codes;      ///< exit codes at which the answer is whole
-};
-/// "hires_lab" for the verbs of the lab, else "hires".
-std::string ProgramNameOf(const Play& play);
+namespace hires::lab {
 
 /// How near a number of ours has to come to the published one.
 struct Acceptance {
@@ -34,16 +23,6 @@ struct Acceptance {
   Kind kind{Kind::kWithin};
   double bound{0.0};
 };
-
-/// Where a number stands.
-struct AnswerField {
-  std::string play;
-  /// JSON pointer into the play's answer; true and false are 1 and 0 there, and what has `lower`
-  /// and `upper` is an interval about its `estimate`, `mean` or `share`. A step `key=value` is the
-  /// first entry of a list whose `key` says so.
-  std::string pointer;
-};
-std::string ToString(const AnswerField& field);  ///< "durations:/measures/failed"
 
 /// A number of ours beside that of the dissertation.
 struct ComparedValue {
@@ -94,8 +73,5 @@ std::vector<CatalogueItem> ItemsOf(const Catalogue& catalogue,
 
 /// What has to be played for these items, each after those whose answers it takes.
 std::vector<Play> PlaysFor(const Catalogue& catalogue, const std::vector<CatalogueItem>& items);
-
-/// Names of the plays whose answers a play's command takes.
-std::vector<std::string> NeededBy(const Play& play);
 
 }  // namespace hires::lab

@@ -26,12 +26,6 @@ enum class Verdict {
 };
 const char* ToString(Verdict verdict);  ///< "not reproduced"
 
-/// A number of an answer, with the interval that it was told with.
-struct FoundNumber {
-  double number{0.0};
-  std::optional<double> lower{}, upper{};
-};
-
 struct JudgedValue {
   ComparedValue value;
   /// Nothing: the answer has null there, or there is no value, by dividing by 0 or by null.

@@ -156,8 +156,9 @@ class PlayRunner {
     }
     std::vector<std::string> words{ProgramNameOf(play)};
     words.insert(words.end(), play.command.begin(), play.command.end());
-    done_.answers[play.name] = {std::move(content), store_.KeyOf(play), stored.build,
-                                cli::CommandText(words), stored.seconds,     is_new};
+    done_.answers[play.name] = {std::move(content),      store_.KeyOf(play), stored.build,
+                                cli::CommandText(words), stored.seconds,     stored.date,
+                                is_new};
   }
 
   const PlaysOrder& order_;

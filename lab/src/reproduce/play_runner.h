@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "lab/src/reproduce/catalogue.h"
+#include "lab/src/reproduce/play.h"
 #include "lab/src/reproduce/play_store.h"
 
 namespace hires::lab {
@@ -17,6 +17,7 @@ struct PlaysDone {
     nlohmann::ordered_json content;
     std::string key, build, command;
     double seconds{0.0};  ///< [s] wall time
+    std::string date;     ///< when it was played: "2026-11-28"
     bool is_new{false};   ///< played just now
   };
   std::map<std::string, Answer> answers;

@@ -8,6 +8,7 @@
 
 #include "hires/base/error.h"
 #include "hires/base/hash.h"
+#include "hires/base/local_time.h"
 #include "hires/base/text.h"
 #include "reports/text/configuration_hash.h"
 
@@ -53,7 +54,8 @@ std::string PlayStore::HashOfInput(const std::string& input) {
   const auto known = inputs_.find(input);
   if (known != inputs_.end()) return known->second;
   // Catalogues rest on results, and not the reverse.
-  return inputs_[input] = reports::InputHash(place_.package, input, {"lab/config/reproduce"});
+  return inputs_[input] = reports::InputHash(place_.package, input,
+                                             {"lab/config/reproduce", "lab/config/publish"});
 }
 
 std::string PlayStore::FolderOf(const Play& play) {
@@ -72,11 +74,15 @@ std::optional<PlayStore::Stored> PlayStore::Find(const Play& play) {
         "{}: is broken; wanted build and wall_seconds; delete its folder, and it is played again",
         note));
   }
-  return Stored{AnswerOf(play), content["build"], content["wall_seconds"]};
+  if (!content.contains("date")) return std::nullopt;  // of when no day was noted
+  return Stored{AnswerOf(play), content["build"], content["wall_seconds"], content["date"]};
 }
 
 void PlayStore::Keep(const Play& play, double seconds) {
-  const ordered_json note{{"play", play.name}, {"build", place_.build}, {"wall_seconds", seconds}};
+  const ordered_json note{{"play", play.name},
+                          {"build", place_.build},
+                          {"wall_seconds", seconds},
+                          {"date", base::LocalTime().substr(0, 10)}};
   base::ReplaceTextFile(NoteOf(FolderOf(play)), note.dump(1) + "\n");
 }
 

@@ -5,7 +5,7 @@
 #include <optional>
 #include <string>
 
-#include "lab/src/reproduce/catalogue.h"
+#include "lab/src/reproduce/play.h"
 
 namespace hires::lab {
 
@@ -32,6 +32,7 @@ class PlayStore {
     std::string path;     ///< of the answer
     std::string build;    ///< of the program that played it
     double seconds{0.0};  ///< [s] wall time it took
+    std::string date;     ///< when it was done: "2026-11-28"
   };
   /// The answer of this key, if it is there.  @throws base::ConfigError for a broken file.
   std::optional<Stored> Find(const Play& play);
@@ -43,7 +44,7 @@ class PlayStore {
   std::string AnswerOf(const Play& play) { return FolderOf(play) + "/answer.json"; }
   std::string LogOf(const Play& play) { return FolderOf(play) + "/log.txt"; }
 
-  /// Notes that its answer is whole.
+  /// Notes that its answer is whole, as of today.
   void Keep(const Play& play, double seconds);
   /// Forgets it, with all that was kept to go on.
   void Forget(const Play& play);

@@ -5,6 +5,7 @@
 #include "lab/src/verbs/experiences_command.h"
 #include "lab/src/verbs/experiment_command.h"
 #include "lab/src/verbs/list_command.h"
+#include "lab/src/verbs/publish_command.h"
 #include "lab/src/verbs/reproduce_command.h"
 #include "lab/src/verbs/scenarios_command.h"
 #include "lab/src/experiment/hypothesis_play.h"
@@ -58,6 +59,9 @@ std::vector<cli::ProgramVerb> VerbsOf(CLI::App* app, const std::vector<std::stri
                               [&](const ReproduceOptions& options) {
                                 return RunReproduceVerb(options, folder, cli::IsInterrupted);
                               });
+  table.Add<PublishOptions>(AddPublishVerb, nullptr, [&](const PublishOptions& options) {
+    return RunPublishVerb(options, folder, cli::IsInterrupted);
+  });
   table.Add<LabListOptions>(
       AddLabListVerb, nullptr,
       [&](const LabListOptions& options) { return RunLabListVerb(options, folder); },

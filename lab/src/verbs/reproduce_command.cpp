@@ -2,17 +2,15 @@
 #include "lab/src/verbs/reproduce_command.h"
 
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
-#include <cstdlib>
 #include <filesystem>
 #include <iostream>
 #include <map>
 #include <nlohmann/json.hpp>
 
-#include "lab/src/verbs/experiment_command.h"
+#include "lab/src/verbs/plays_display.h"
 #include "lab/src/reproduce/play_runner.h"
 #include "lab/src/reproduce/play_store.h"
 #include "hires/base/error.h"
@@ -20,7 +18,6 @@
 #include "hires/base/spelling.h"
 #include "hires/base/text.h"
 #include "cli/exit_code.h"
-#include "cli/crew_display.h"
 #include "reports/text/report_table.h"
 #include "lab/src/reproduce/catalogue.h"
 #include "lab/src/reproduce/judge.h"
@@ -34,42 +31,6 @@ std::string CataloguePath(const ReproduceOptions& options, const std::string& pa
   return options.catalogue.empty() ? package + "/lab/config/reproduce.yaml" : options.catalogue;
 }
 
-/// As XDG has it, beside the builds.
-std::string ResultsFolder(const ReproduceOptions& options) {
-  if (!options.results.empty()) return options.results;
-  const char* cache = std::getenv("XDG_CACHE_HOME");
-  const char* home = std::getenv("HOME");
-  if (cache != nullptr && *cache != '\0') return std::string(cache) + "/hires/results";
-  if (home != nullptr && *home != '\0') return std::string(home) + "/.cache/hires/results";
-  throw base::ConfigError(
-      "reproduce: neither XDG_CACHE_HOME nor HOME is set; name a folder with --results");
-}
-
-/// A bar that is drawn over itself on a terminal, a line for each play in a log.
-class PlaysDisplay {
- public:
-  PlaysDisplay() : is_terminal_(isatty(STDERR_FILENO) != 0) {}
-
-  void Show(const PlaysProgress& progress) {
-    const std::string text =
-        fmt::format("{} of {}, {}: {}", progress.number, progress.all, progress.play,
-                    cli::ProgressText(progress.done / (progress.done + progress.left), progress.done));
-    if (is_terminal_) {
-      std::cerr << '\r' << text << "\033[K" << std::flush;
-    } else if (progress.play != told_) {
-      std::cerr << text << std::endl;
-    }
-    told_ = progress.play;
-  }
-  void Clear() const {
-    if (is_terminal_ && !told_.empty()) std::cerr << "\r\033[K";
-  }
-
- private:
-  bool is_terminal_;
-  std::string told_;
-};
-
 int List(const std::vector<CatalogueItem>& items, const std::vector<Play>& plays,
          PlayStore* store) {
   std::vector<std::vector<std::string>> rows{{"section", "what", "title", "plays"}};
@@ -77,25 +38,7 @@ int List(const std::vector<CatalogueItem>& items, const std::vector<Play>& plays
     rows.push_back({item.section, item.name, item.title, base::Join(item.plays, ", ")});
   }
   std::cout << reports::FormatTable(rows) << '\n';
-  rows = {{"play", "answer", "time [s]", "command"}};
-  double seconds = 0.0, missing = 0.0;
-  for (const Play& play : plays) {
-    store->KeyOf(play);
-    const auto stored = store->Find(play);
-    seconds += stored ? stored->seconds : play.seconds;
-    if (!stored) missing += play.seconds;
-    std::vector<std::string> words{ProgramNameOf(play)};
-    words.insert(words.end(), play.command.begin(), play.command.end());
-    rows.push_back({play.name,
-                    !stored                           ? "missing"
-                    : stored->build == store->build() ? "there"
-                                                      : "there, of another build",
-                    fmt::format("{:.0f}", stored ? stored->seconds : play.seconds),
-                    cli::CommandText(words)});
-  }
-  std::cout << reports::FormatTable(rows)
-            << fmt::format("{}, {:.0f} s in all; {:.0f} s are still to be played\n",
-                           base::Counted(plays.size(), "play"), seconds, missing);
+  PrintPlays(plays, store);
   return cli::kExitRecommended;
 }
 
@@ -134,13 +77,7 @@ void Print(const std::vector<JudgedItem>& items, const PlaysDone& done, const st
       items.size() == 1 ? "table, figure or section" : "tables, figures and sections",
       base::Join(counts, ", "));
   for (const auto& [play, why] : done.missing) std::cout << fmt::format("{}: {}\n", play, why);
-  const auto old = std::count_if(done.answers.begin(), done.answers.end(),
-                                 [&](const auto& entry) { return entry.second.build != build; });
-  if (old > 0) {
-    std::cout << fmt::format(
-        "by another build of this version, from the same files: {} of {}; --again plays anew\n",
-        old, base::Counted(done.answers.size(), "answer"));
-  }
+  SayOtherBuilds(done, build);
 }
 
 }  // namespace
@@ -172,7 +109,7 @@ int RunReproduceVerb(const ReproduceOptions& options, const std::string& package
   order.plays = PlaysFor(catalogue, items);
   order.lab_program = std::filesystem::read_symlink("/proc/self/exe").string();
   order.program = ProductProgram();
-  const std::string results = ResultsFolder(options);
+  const std::string results = PlaysFolder("reproduce", options.results);
   PlayStore store({results, package_folder, HashOfFile(order.lab_program)});
   if (options.is_list) return List(items, order.plays, &store);
   const base::WriterLock lock(results + "/results", "name another folder with --results");
