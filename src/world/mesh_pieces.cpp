@@ -1,9 +1,12 @@
 #include "world/mesh_pieces.h"
 
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <map>
 #include <memory>
 #include <numeric>
+#include <set>
+#include <utility>
 
 namespace hires::world {
 namespace {
@@ -105,12 +108,23 @@ bool IsConvex(const geometry::TriangleMesh& mesh, double slack) {
   return true;
 }
 
+bool IsSolid(const geometry::TriangleMesh& mesh) {
+  std::set<std::pair<int, int>> edges;
+  for (const auto& t : mesh.triangles) {
+    for (int k = 0; k < 3; ++k) edges.insert({t[k], t[(k + 1) % 3]});
+  }
+  const bool is_closed = std::all_of(edges.begin(), edges.end(), [&](const auto& edge) {
+    return edges.count({edge.second, edge.first}) > 0;
+  });
+  return is_closed && IsConvex(mesh);
+}
+
 std::vector<geometry::Polygon> MeshOutlinesInBand(const geometry::TriangleMesh& mesh,
                                                   const geometry::Pose3& X_WS, double z_min,
                                                   double z_max) {
   std::vector<geometry::Polygon> outlines;
   for (geometry::TriangleMesh& part : ConnectedParts(mesh)) {
-    if (IsConvex(part)) {
+    if (IsSolid(part)) {
       const auto shared = std::make_shared<const geometry::TriangleMesh>(std::move(part));
       AppendOutline(shared, X_WS, z_min, z_max, &outlines);
       continue;

@@ -37,7 +37,7 @@ RolloutRecording Record(const RolloutSetup& setup, int index) {
 TEST(RecordRolloutTest, ManyPlayedAgainAreThoseThatWereImagined) {
   const RolloutSetup setup = Disturbed();
   std::vector<RolloutResult> results;
-  const int num_rollouts = test_support::Rounds(200);
+  const int num_rollouts = hires::test_support::Rounds(200);
   for (int i = 0; i < num_rollouts; ++i) results.push_back(*PlayRollout(setup, kFast, i));
   const Evidence evidence = SumUp(results);
   ASSERT_GT(evidence.falls, 0);  // both kinds are there

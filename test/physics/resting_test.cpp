@@ -16,7 +16,6 @@ namespace hires::physics::resting_test {
 namespace {
 
 using Eigen::AngleAxisd;
-using Eigen::Quaterniond;
 using Eigen::Vector3d;
 using geometry::Pose3;
 
@@ -62,7 +61,10 @@ Drawn DrawThing(Thing thing, base::Rng* rng) {
 }
 
 Pose3 Rotated(double yaw, const Vector3d& at) {
-  return {Quaterniond(AngleAxisd(yaw, Vector3d::UnitZ())), at};
+  Pose3 pose;
+  pose.rotation = AngleAxisd(yaw, Vector3d::UnitZ());
+  pose.translation = at;
+  return pose;
 }
 
 /// Half of all yaws are whole quarter turns, in which edges are parallel but for rounding.

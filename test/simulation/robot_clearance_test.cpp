@@ -11,7 +11,7 @@
 #include "hires/geometry/angles.h"
 #include "hires/robot/robot_profile.h"
 #include "hires/simulation/scene.h"
-#include "physics/scenes.h"
+#include "support/box_mesh.h"
 #include "support/scenes.h"
 
 namespace hires::simulation::robot_clearance_test {

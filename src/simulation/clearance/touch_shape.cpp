@@ -10,7 +10,6 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
-#include <set>
 #include <utility>
 #include <vector>
 
@@ -61,21 +60,10 @@ Eigen::Isometry3d ToIsometry(const geometry::Pose3& pose) {
 using Plane = Eigen::Hyperplane<double, 3>;
 using ConvexPart = std::vector<Plane>;  // normals outwards
 
-/// Every edge belongs to two triangles, which run along it in opposite directions.
-bool IsClosed(const geometry::TriangleMesh& mesh) {
-  std::set<std::pair<int, int>> edges;
-  for (const auto& t : mesh.triangles) {
-    for (int k = 0; k < 3; ++k) edges.insert({t[k], t[(k + 1) % 3]});
-  }
-  return std::all_of(edges.begin(), edges.end(), [&](const std::pair<int, int>& edge) {
-    return edges.count({edge.second, edge.first}) > 0;
-  });
-}
-
 std::vector<ConvexPart> SolidPartsOf(const geometry::TriangleMesh& mesh) {
   std::vector<ConvexPart> solid;
   for (const geometry::TriangleMesh& part : world::ConnectedParts(mesh)) {
-    if (!IsClosed(part) || !world::IsConvex(part)) continue;
+    if (!world::IsSolid(part)) continue;
     ConvexPart planes;
     for (const auto& t : part.triangles) {
       const Eigen::Vector3d& a = part.vertices[t[0]];
