@@ -45,6 +45,10 @@ Operator ReadOperator(const std::string& source, const Datum& item);
 Method ReadMethod(const std::string& source, const Datum& item);
 Axiom ReadAxiom(const std::string& source, const Datum& item);
 
+/// A head, atom or task without quotes, which mean nothing where nothing is evaluated: (p 'a) is
+/// (p a). A (call ...) keeps its own.
+Datum Unquoted(Datum term);
+
 /// Variables of a datum are appended, as often as they stand there.
 void CollectVariables(const Datum& datum, std::vector<std::string>* variables);
 

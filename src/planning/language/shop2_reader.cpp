@@ -104,11 +104,13 @@ std::vector<Datum> ReadFacts(const Construct& in, const Datum& facts) {
   if (!is_list || !facts.Head().empty()) {
     shop2::FailAbout(in, facts, "a list of facts, as in ((on a b) (clear a)), or nil");
   }
+  std::vector<Datum> atoms;
   for (const Datum& fact : facts.items) {
     shop2::CheckAtom(in, fact, kFactWanted);
     if (!fact.tail.empty() || !IsGround(fact)) shop2::FailAbout(in, fact, kFactWanted);
+    atoms.push_back(shop2::Unquoted(fact));
   }
-  return facts.items;
+  return atoms;
 }
 
 Problem ReadProblem(const Datum& form, const std::string& source) {
