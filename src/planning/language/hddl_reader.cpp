@@ -7,6 +7,7 @@
 #include "hires/base/check.h"
 #include "hires/base/text.h"
 #include "hires/planning/datum_reader.h"
+#include "hires/planning/effect_atoms.h"
 #include "planning/language/hddl_effect.h"
 #include "planning/language/hddl_formula.h"
 #include "planning/language/hddl_network.h"
@@ -187,19 +188,8 @@ class DomainReader {
     goals.insert(goals.end(), effects.value_atoms.begin(), effects.value_atoms.end());
   }
 
-  static void AddPredicates(const std::vector<Effect>& effects, std::set<std::string>* predicates) {
-    for (const Effect& effect : effects) {
-      if (effect.kind == Effect::Kind::kAtom) predicates->insert(std::string(effect.term.Head()));
-      AddPredicates(effect.effects, predicates);
-    }
-  }
-
   void CollectStaticConditions() {
-    std::set<std::string> changed;
-    for (const Operator& op : domain_.operators) {
-      AddPredicates(op.deletes, &changed);
-      AddPredicates(op.adds, &changed);
-    }
+    const PredicateSet changed = ChangingPredicates(domain_);
     for (const Operator& op : domain_.operators) {
       HddlVocabulary::StaticCondition condition;
       for (std::size_t i = 1; i < op.head.items.size(); ++i) {
@@ -207,7 +197,7 @@ class DomainReader {
       }
       for (const Formula& goal : op.precondition.condition.parts) {
         const std::string predicate(goal.term.Head());
-        if (goal.kind != Formula::Kind::kAtom || changed.count(predicate) > 0) continue;
+        if (goal.kind != Formula::Kind::kAtom || changed.MayHave(predicate)) continue;
         if (vocabulary_.predicates.count(predicate) > 0) condition.atoms.push_back(goal.term);
       }
       vocabulary_.static_conditions[op.head.items[0].text.substr(1)] = std::move(condition);
