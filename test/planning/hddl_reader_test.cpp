@@ -579,7 +579,8 @@ INSTANTIATE_TEST_SUITE_P(
     Sections, BadHddlProblemTest,
     testing::Values(
         BadText{"(:htn)", {"bad.hddl:1:1: problem 'p'", "(:domain ...) is missing", "world"}},
-        BadText{"(:domain moon) (:htn)", {"bad.hddl:2:1", "(:domain moon)", "'world'"}},
+        BadText{"(:domain) (:htn)", {"bad.hddl:2:1", "wanted (:domain world)"}},
+        BadText{"(:domain 7) (:htn)", {"bad.hddl:2:10", "7 stands where the name of a domain"}},
         In("", {"(:htn ...) is missing", "which tasks"}),
         In("(:htn) (:htn-ti)", {"two (:htn ...) sections"}),
         In("(:htn :subtasks (fly dock))", {"bad.hddl:3:18: (:htn ...)", "task 'fly' is unknown"}),

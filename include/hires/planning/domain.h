@@ -143,6 +143,8 @@ struct Domain {
   /// Tasks that methods name and nothing handles, with what is wrong and where: no harm until one
   /// is reached. HDDL has none, its tasks are declared.
   std::map<std::string, std::string> unknown_tasks;
+  /// What can hardly be meant, though it may be read, with file and line.
+  std::vector<std::string> warnings;
   std::vector<Datum> facts;  ///< hold in every state: HDDL's constants with their types
   /// What an HDDL domain declares (types, predicates, tasks), for the reader of its problems; else
   /// null.
@@ -152,13 +154,15 @@ struct Domain {
 /// What is to be done, and from where.
 struct Problem {
   std::string name;
-  std::string domain;  ///< name of the domain it is written for
+  std::string domain;  ///< name of the domain it is written for, "" where it says none
+  Place domain_place;
   std::string source;
   std::vector<Datum> facts;  ///< ground atoms, oldest first; repeated ones count once
   Precondition parameters;   ///< binds variables of `tasks` (HDDL's :htn :parameters); else empty
   TaskNetwork tasks;
   std::optional<Formula> goal;     ///< must hold in the end (HDDL's :goal)
   std::vector<Datum> protections;  ///< atoms protected from the beginning, as often as listed here
+  std::vector<std::string> warnings;  ///< as Domain's
 };
 
 }  // namespace hires::planning

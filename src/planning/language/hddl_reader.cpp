@@ -301,12 +301,11 @@ class ProblemReader {
         vocabulary_(*domain.vocabulary) {
     problem_.name = definition_.name;
     problem_.source = source;
-    problem_.domain = domain.name;
   }
 
   Problem Read() {
     const Sections sections = ReadSections(spot_, definition_.form, ProblemSections(), {});
-    CheckDomain(sections);
+    ReadDomainName(sections);
     if (const Datum* section = OneOf(sections, ":requirements")) {
       CheckRequirements(spot_.Within("(:requirements ...)"), *section);
     }
@@ -328,17 +327,18 @@ class ProblemReader {
   }
 
  private:
-  void CheckDomain(const Sections& sections) const {
+  void ReadDomainName(const Sections& sections) {
     const Datum* section = OneOf(sections, ":domain");
     if (section == nullptr) {
       spot_.Fail(definition_.form,
                  fmt::format("(:domain ...) is missing; add (:domain {})", domain_.name));
     }
-    if (section->items.size() != 2 || !section->items[1].IsSymbol(domain_.name)) {
-      spot_.Fail(*section, fmt::format("{} came, the domain read is '{}' ({}); give both files of "
-                                       "one domain",
-                                       Excerpt(*section), domain_.name, domain_.source));
+    if (section->items.size() != 2) {
+      spot_.Fail(*section,
+                 fmt::format("{} came, wanted (:domain {})", Excerpt(*section), domain_.name));
     }
+    problem_.domain = RequireName(spot_, section->items[1], "the name of a domain");
+    problem_.domain_place = section->place;
   }
 
   const Datum& HtnSection(const Sections& sections) const {

@@ -52,7 +52,7 @@ Datum Unquoted(Datum term);
 /// Variables of a datum are appended, as often as they stand there.
 void CollectVariables(const Datum& datum, std::vector<std::string>* variables);
 
-/// Operators once each, adds bound, tasks handled.
+/// Operators once each, adds bound, deletes bound or warned of, tasks handled.
 void CheckDomain(Domain* domain);
 
 }  // namespace hires::planning::shop2
