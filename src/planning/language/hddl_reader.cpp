@@ -108,7 +108,7 @@ class DomainReader {
     CollectStaticConditions();
     for (const Datum* form : AllOf(sections, ":method")) ReadMethod(*form);
     AddMissingMethods();
-    domain_.facts = TypeFacts(spot_.Within("(:constants ...)"), vocabulary_, 0, 0);
+    domain_.facts = TypeFacts(spot_.Within("(:constants ...)"), vocabulary_, nullptr);
     domain_.vocabulary = std::make_shared<HddlVocabulary>(std::move(vocabulary_));
     return std::move(domain_);
   }
@@ -309,8 +309,6 @@ class ProblemReader {
     if (const Datum* section = OneOf(sections, ":requirements")) {
       CheckRequirements(spot_.Within("(:requirements ...)"), *section);
     }
-    const std::size_t num_constants = vocabulary_.object_order.size();
-    const std::size_t num_types = vocabulary_.types.size();
     if (const Datum* section = OneOf(sections, ":objects")) {
       ReadObjects(spot_.Within("(:objects ...)"), *section, &vocabulary_);
     }
@@ -321,7 +319,7 @@ class ProblemReader {
     if (const Datum* section = OneOf(sections, ":metric")) CheckMetric(*section);
     // After the conditions, which may have made types of their own by (either ...).
     problem_.facts =
-        TypeFacts(spot_.Within("(:objects ...)"), vocabulary_, num_constants, num_types);
+        TypeFacts(spot_.Within("(:objects ...)"), vocabulary_, domain_.vocabulary.get());
     if (const Datum* section = OneOf(sections, ":init")) ReadInit(*section);
     return std::move(problem_);
   }
