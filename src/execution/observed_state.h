@@ -7,6 +7,7 @@
 
 #include "execution/facts.h"
 #include "hires/execution/monitor.h"
+#include "hires/planning/domain.h"
 
 namespace hires::execution {
 
@@ -28,14 +29,14 @@ class ObservedState {
   void Note(const planning::PlanStep& bookkeeping);
   void ForgetNotes();
 
-  /// Whether an operator of the domain changes it.
-  bool IsChanging(const std::string& predicate) const { return changing_.count(predicate) > 0; }
+  /// Whether an operator of the domain may change it.
+  bool IsChanging(const std::string& predicate) const { return changing_.MayHave(predicate); }
   /// Known to imagination: named by an atom or by a change.
   const std::set<std::string>& instances() const { return instances_; }
   void Know(const std::set<std::string>& instances);
 
  private:
-  std::set<std::string> changing_;
+  planning::PredicateSet changing_;
   bool is_known_{false};
   std::optional<double> observed_until_;  // [s]
   Facts observed_, facts_;

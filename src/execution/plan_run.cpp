@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "execution/instantiation.h"
+#include "hires/planning/domain.h"
 #include "hires/planning/plan_order.h"
 #include "hires/planning/reasons.h"
 
@@ -34,6 +35,18 @@ bool HasReasons(const Plan& plan) {
   });
 }
 
+/// Predicates that steps change; what was said with others stays as it is. What variables among the
+/// effects stood for is known from the plan.
+std::set<std::string> ChangingIn(const Plan& plan, const planning::Domain& domain) {
+  std::set<std::string> names = planning::ChangingPredicates(domain).names;
+  for (const PlanStep& step : plan.steps) {
+    for (const auto* atoms : {&step.deletes, &step.adds}) {
+      for (const Datum& atom : *atoms) names.emplace(atom.Head());
+    }
+  }
+  return names;
+}
+
 std::vector<Expectation> ExpectationsOf(const PlanStep& step,
                                         const std::set<std::string>& changing) {
   std::vector<Expectation> expectations;
@@ -55,7 +68,7 @@ PlanRun::PlanRun(int number, Plan plan, planning::Problem problem, const plannin
 }
 
 void PlanRun::Derive(const planning::Domain& domain, const planning::OperatorData& operators) {
-  const std::set<std::string> changing = ChangingPredicates(domain);
+  const std::set<std::string> changing = ChangingIn(plan_, domain);
   plan_.subtask_order.clear();
   if (operators.subtask_order == planning::SubtaskOrder::kKept) {
     plan_.subtask_order = OrderOfSubtasks(domain, problem_, plan_);

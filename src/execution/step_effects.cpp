@@ -2,20 +2,31 @@
 
 #include <algorithm>
 
+#include "hires/planning/domain.h"
 #include "hires/planning/substitution.h"
 
 namespace hires::execution {
 namespace {
 
-using planning::Effect;
+/// Effects as the arguments of a step tell them; other variables may stand for anything.
+class EffectPatterns : public planning::DatumAtoms {
+ public:
+  EffectPatterns(const planning::Substitution& arguments, std::vector<Datum>* patterns)
+      : arguments_(arguments), patterns_(*patterns) {}
 
-template <typename Visit>
-void VisitAtoms(const std::vector<Effect>& effects, Visit visit) {
-  for (const Effect& effect : effects) {
-    if (effect.kind == Effect::Kind::kAtom) visit(effect.term);
-    VisitAtoms(effect.effects, visit);
+  Datum Instantiate(const planning::Effect& effect) const { return arguments_.Apply(effect.term); }
+  template <typename Visit>
+  void ForEachBinding(const planning::Effect&, const Visit& visit) const {
+    visit();
   }
-}
+  void Take(const Datum& atom) {
+    if (!IsProtection(atom)) patterns_.push_back(atom);
+  }
+
+ private:
+  const planning::Substitution& arguments_;
+  std::vector<Datum>& patterns_;
+};
 
 void RemoveDisturbed(const Disturbance& disturbance, Facts* facts) {
   facts->RemoveMatches(disturbance.effects);
@@ -31,16 +42,6 @@ const planning::Operator* OperatorOf(const planning::Domain& domain, const Datum
   return nullptr;
 }
 
-std::set<std::string> ChangingPredicates(const planning::Domain& domain) {
-  std::set<std::string> names;
-  const auto note = [&](const Datum& atom) { names.emplace(atom.Head()); };
-  for (const planning::Operator& op : domain.operators) {
-    VisitAtoms(op.deletes, note);
-    VisitAtoms(op.adds, note);
-  }
-  return names;
-}
-
 Disturbance DisturbanceOf(const planning::Domain& domain, const planning::OperatorData& operators,
                           const planning::PlanStep& step) {
   Disturbance disturbance;
@@ -49,8 +50,8 @@ Disturbance DisturbanceOf(const planning::Domain& domain, const planning::Operat
   const planning::Operator* op = OperatorOf(domain, step.task);
   planning::Substitution arguments;
   if (op == nullptr || !arguments.Unify(op->head, step.task)) return disturbance;
-  VisitAtoms(op->deletes,
-             [&](const Datum& atom) { disturbance.effects.push_back(arguments.Apply(atom)); });
+  EffectPatterns patterns(arguments, &disturbance.effects);
+  CollectAtoms(op->deletes, &patterns);
   for (const Datum& pattern : EntryOf(operators, step.task.Head()).disturbs) {
     disturbance.passing.push_back(arguments.Apply(pattern));
   }

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <set>
 #include <string>
 #include <vector>
 
@@ -12,9 +11,6 @@ namespace hires::execution {
 
 /// The operator of a step; null where the domain has none.
 const planning::Operator* OperatorOf(const planning::Domain& domain, const Datum& task);
-
-/// Predicates that steps change. What is said with others stays as it is.
-std::set<std::string> ChangingPredicates(const planning::Domain& domain);
 
 /// What may hold or not while a step runs.
 struct Disturbance {

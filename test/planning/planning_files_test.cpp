@@ -3,16 +3,20 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <array>
 #include <filesystem>
 
 #include "hires/base/error.h"
+#include "hires/planning/planner.h"
 #include "support/temporary_folder.h"
 
 namespace hires::planning::planning_files_test {
 namespace {
 
 using ::testing::AllOf;
+using ::testing::ElementsAre;
 using ::testing::HasSubstr;
+using ::testing::IsEmpty;
 using ::testing::SizeIs;
 
 constexpr const char* kHddlDomain =
@@ -106,6 +110,39 @@ TEST(LoadTest, LanguagesAreNotMixed) {
   const std::string problem = folder.Write("p.hddl", kHddlProblem);
   EXPECT_THAT(ErrorOf([&] { LoadProblems(problem, domain); }),
               AllOf(HasSubstr("p.hddl: is written in HDDL"), HasSubstr("d.lisp in SHOP2")));
+}
+
+// Published files differ in this, and other planners go on.
+TEST(LoadTest, AProblemOfADomainOfAnotherNameIsWarnedOfAndStrictlyRefused) {
+  const hires::test_support::TemporaryFolder folder;
+  const std::vector<std::array<std::string, 4>> cases{
+      {"d.hddl", kHddlDomain, "(define (problem p)\n (:domain e) (:objects a - place)\n (:htn))",
+       "p.hddl:2:2: problem 'p'"},
+      {"d.lisp", kShop2Domain, "(defproblem p\n e () ((!go a)))", "p.lisp:2:2: problem 'p'"},
+      {"d.lisp", kShop2Domain, "(defproblem\n (p :domain e) () ((!go a)))",
+       "p.lisp:2:13: problem 'p'"}};
+  for (const auto& [domain_file, domain_text, problem_text, place] : cases) {
+    const Domain domain = LoadDomain(folder.Write(domain_file, domain_text));
+    const std::string file = "p" + domain_file.substr(1);
+    const Problem problem = LoadProblems(folder.Write(file, problem_text), domain).at(0);
+    const auto says = AllOf(HasSubstr(place), HasSubstr("'e'"), HasSubstr("'d'"));
+    EXPECT_THAT(problem.warnings, ElementsAre(says));
+    const PlanResult result = FindPlans(domain, problem);
+    EXPECT_EQ(result.outcome, PlanOutcome::kFound);
+    EXPECT_THAT(result.doubts, ElementsAre(says));
+    PlanRequest request;
+    request.strict = true;
+    EXPECT_THAT(ErrorOf([&] { FindPlans(domain, problem, request); }), says);
+  }
+}
+
+TEST(LoadTest, AProblemThatNamesItsDomainOrNoneIsNotWarnedOf) {
+  const hires::test_support::TemporaryFolder folder;
+  const Domain domain = LoadDomain(folder.Write("d.lisp", kShop2Domain));
+  for (const char* text : {"(defproblem p D () ((!go a)))", "(defproblem p () ((!go a)))",
+                           "(make-problem 'p 'd '() '((!go a)))"}) {
+    EXPECT_THAT(LoadProblems(folder.Write("p.lisp", text), domain).at(0).warnings, IsEmpty());
+  }
 }
 
 TEST(LoadTest, TasksOfProblemsAreCheckedAgainstTheDomain) {

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "hires/planning/planner.h"
+#include "hires/planning/reasons.h"
 #include "hires/planning/validator.h"
 #include "planning/support/brute_force.h"
 #include "planning/support/plan_text.h"
@@ -134,14 +135,43 @@ HIRES_PROPERTY(RandomNetworkTest, AllPlansByTheRulesOfHddlAreThoseOfBruteForce, 
   ExpectSameAsBruteForce(domain, network.problem());
 }
 
+std::set<std::string> TextsOf(const std::vector<Datum>& atoms) {
+  std::set<std::string> texts;
+  for (const Datum& atom : atoms) texts.insert(ToString(atom));
+  return texts;
+}
+
+/// The effects that the steps name lead to the state after the plan, and what the steps need holds
+/// before them, made so by the steps that their links name.
+void ExpectReasonsThatFit(const Domain& domain, const Problem& problem, Plan plan) {
+  AddReasons(domain, problem, &plan);
+  std::set<std::string> facts = TextsOf(problem.facts);
+  for (const PlanStep& step : plan.steps) {
+    for (const CausalLink& link : step.links) {
+      const std::string atom = ToString(link.literal.atom);
+      if (link.literal.holds) RC_ASSERT(facts.count(atom) == 1u);
+      if (!link.literal.holds && IsGround(link.literal.atom)) RC_ASSERT(facts.count(atom) == 0u);
+      if (!link.literal.holds || link.producer < 0) continue;
+      RC_ASSERT(TextsOf(plan.steps[link.producer].adds).count(atom) == 1u);
+    }
+    for (const Datum& atom : step.deletes) RC_ASSERT(facts.erase(ToString(atom)) == 1u);
+    for (const Datum& atom : step.adds) facts.insert(ToString(atom));
+  }
+  const int num_steps = static_cast<int>(plan.steps.size());
+  RC_ASSERT(TextsOf(FactsAfter(domain, problem, plan, num_steps)) == facts);
+}
+
 void ExpectValid(const RandomNetwork& network) {
   const Domain domain = network.domain();
   const Problem problem = network.problem();
   PlanRequest request = AskFor(Which::kAll);
   request.max_plans = 50;
   request.stop = AfterExpansions(2'000);
-  for (const Plan& plan : FindPlans(domain, problem, request).plans) {
+  const PlanResult result = FindPlans(domain, problem, request);
+  RC_CLASSIFY(!result.plans.empty(), "has plans");
+  for (const Plan& plan : result.plans) {
     RC_ASSERT(ValidatePlan(domain, problem, plan) == std::vector<std::string>{});
+    ExpectReasonsThatFit(domain, problem, plan);
   }
 }
 
@@ -150,6 +180,13 @@ HIRES_PROPERTY(RandomNetworkTest, EveryPlanIsValid, ()) { ExpectValid(*RandomNet
 HIRES_PROPERTY(RandomNetworkTest, EveryPlanWithProtectionsIsValid, ()) {
   NetworkOptions options;
   options.protections = true;
+  ExpectValid(*RandomNetworks(options));
+}
+
+HIRES_PROPERTY(RandomNetworkTest, EveryPlanWhoseEffectsAreVariablesIsValid, ()) {
+  NetworkOptions options;
+  options.variables = true;
+  options.protections = *rc::gen::arbitrary<bool>();
   ExpectValid(*RandomNetworks(options));
 }
 

@@ -91,10 +91,18 @@ TEST(ReferenceProverTest, NotHoldsWhereNothingMatches) {
   EXPECT_TRUE(Condition("((not (and (p ?x) (q ?x))))", "((p a) (q b))").Holds());
 }
 
-TEST(ReferenceProverTest, ImplyIsATestThatBindsNothing) {
+TEST(ReferenceProverTest, ImplyHoldsWithoutItsConditionOrBindsByItsConclusion) {
   EXPECT_TRUE(Condition("((imply (p a) (q b)))", "()").Holds());
   EXPECT_TRUE(Condition("((imply (p a) (q b)))", "((p a) (q b))").Holds());
   EXPECT_FALSE(Condition("((imply (p a) (q b)))", "((p a))").Holds());
+  EXPECT_THAT(Condition("((imply (p a) (q ?x)))", "((p a) (q b) (q c))").Values("?x"),
+              ElementsAre("b", "c"));
+}
+
+TEST(ReferenceProverTest, ExistsIsATestThatBindsNothing) {
+  EXPECT_THAT(Condition("((exists (?y) (q ?y ?x)) (p ?x))", "((p a) (q b c))").Values("?x"),
+              ElementsAre("a"));
+  EXPECT_FALSE(Condition("((p ?x) (exists (?y) (q ?y ?x)))", "((p a) (q b c))").Holds());
 }
 
 TEST(ReferenceProverTest, ForallAsksOfEveryInstance) {

@@ -10,7 +10,9 @@
 namespace hires::planning::shop2_reader_test {
 namespace {
 
+using ::testing::AllOf;
 using ::testing::ElementsAre;
+using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 using ::testing::Pair;
 using ::testing::SizeIs;
@@ -208,6 +210,37 @@ TEST(OperatorReaderTest, KeywordsComeInAnyOrder) {
 
 // ------------------------------------------------------------------------------------------
 // methods
+
+std::vector<std::string> WarningsOf(const std::string& op) {
+  return DomainOf("(:operator (!unplug ?lamp ?x)\n" + op + ")").warnings;
+}
+
+TEST(OperatorReaderTest, ADeleteWhoseVariableNothingBindsIsWarnedOf) {
+  EXPECT_THAT(WarningsOf("() ((plugged ?lamp ?socket)) ()"),
+              ElementsAre(AllOf(HasSubstr("test.lisp:2:5: operator '!unplug'"),
+                                HasSubstr("?socket in the delete (plugged ?lamp ?socket)"),
+                                HasSubstr("never bound"), HasSubstr("deletes nothing"))));
+  for (const char* text :
+       {"() (?socket) ()", "() ?socket ()", "() ((:protection (plugged ?lamp ?socket))) ()",
+        "((not (plugged ?lamp ?socket))) ((plugged ?lamp ?socket)) ()",
+        "((forall (?s) ((plugged ?lamp ?s)) ((dead ?s ?socket)))) ((plugged ?lamp ?socket)) ()",
+        "((setof ?socket ((plugged ?lamp ?socket)) ?all)) ((plugged ?lamp ?socket)) ()",
+        "() ((forall (?s) ((plugged ?lamp ?s)) ((plugged ?lamp ?socket)))) ()",
+        "() ((plugged ?lamp (in . ?socket))) ()"}) {
+    EXPECT_THAT(WarningsOf(text), ElementsAre(HasSubstr("?socket in the delete"))) << text;
+  }
+  EXPECT_THAT(WarningsOf("() ((plugged ?lamp ?)) ()"), ElementsAre(HasSubstr(": ? in the delete")));
+  EXPECT_THAT(DomainOf("(:op (!o) :delete ((p ?x ?y)))").warnings, SizeIs(2));
+}
+
+TEST(OperatorReaderTest, ADeleteWhoseVariablesAreBoundIsNotWarnedOf) {
+  for (const char* text :
+       {"((plugged ?lamp ?s)) ((plugged ?lamp ?s)) ()", "((?goal ?s) ?x) ((p ?s) ?x) ()",
+        "((assign ?s (+ 1 2))) ((p ?s)) ()", "((or (p ?s) (q ?s))) ((p ?s)) ()",
+        "((setof ?a ((p ?a)) ?s)) ?s ()", "() ((forall (?v) ((p ?v ?w)) ((p ?v ?w)))) ()"}) {
+    EXPECT_THAT(WarningsOf(text), IsEmpty()) << text;
+  }
+}
 
 TEST(MethodReaderTest, BranchesMayHaveLabels) {
   const Domain domain =

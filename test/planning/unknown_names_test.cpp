@@ -125,7 +125,7 @@ TEST(MisspeltPredicatesTest, TheyAreWarnedAboutAndStrictlyRefused) {
   const Domain domain = ReadShop2Domain(kCups, "cups.lisp");
   const Problem problem =
       ReadShop2Problems("(defproblem p cups ((empty left)) ())", "p.lisp").front();
-  EXPECT_THAT(FindPlans(domain, problem).misspelt,
+  EXPECT_THAT(FindPlans(domain, problem).doubts,
               ::testing::Contains(HasSubstr("did you mean 'empty'?")));
   PlanRequest request;
   request.strict = true;

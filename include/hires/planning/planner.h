@@ -41,7 +41,7 @@ struct PlanRequest {
   double max_cost{std::numeric_limits<double>::infinity()};  ///< dearer paths are given up
   bool decomposition{true};  ///< plans carry their nodes; otherwise steps say node -1
   bool loop_check{true};     ///< give up paths that come back to a state and task network
-  bool strict{false};  ///< an unknown task or function is an error even if it is never reached
+  bool strict{false};        ///< a warning or doubt is an error
   std::size_t max_trace{0};  ///< reasons kept, the latest ones; 0 keeps none
   /// Where there is no plan, the search is repeated to say which way led furthest and why it ended
   /// (PlanResult::deepest); it takes about twice the time then.
@@ -80,8 +80,9 @@ struct PlanResult {
   /// you mean 'guest1'?)".
   std::vector<std::string> unknown_names;
   std::vector<std::string> warnings;  ///< unknown tasks and functions, none of which was reached
-  std::vector<std::string>
-      misspelt;  ///< predicates asked for that nothing gives, with what is meant
+  /// What can hardly be meant: warnings of domain and problem, and predicates asked for that
+  /// nothing gives, with what is meant.
+  std::vector<std::string> doubts;
 };
 
 /// Searches for plans with SHOP2's semantics: tasks are decomposed in the order in which their

@@ -24,7 +24,7 @@ Domain LoadDomain(const std::string& path);
 void CheckSidecar(const std::string& domain_path, const Domain& domain);
 
 /// The problems in a file of the language of `domain`: one in HDDL, one or more in SHOP2. Their
-/// tasks are checked against the domain.
+/// tasks are checked against the domain; one written for a domain of another name has a warning.
 /// @throws base::ConfigError as above, also where file and domain are of different languages.
 std::vector<Problem> LoadProblems(const std::string& path, const Domain& domain);
 

@@ -40,8 +40,8 @@ struct Proof {
 /// shares nothing with the search but the domain.
 ///
 /// Facts come before axioms. Of an axiom, the first branch that has a proof is the only one used.
-/// `not` holds by failure; `imply` and `forall` are tests that bind nothing; `setof` fails where
-/// there is nothing to collect.
+/// `not` holds by failure; `forall` and `exists` are tests that bind nothing; (imply a b) is
+/// (or (not a) b); `setof` fails where there is nothing to collect.
 class ReferenceProver {
  public:
   struct Limits {

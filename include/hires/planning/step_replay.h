@@ -49,6 +49,7 @@ class StepReplay {
   const std::map<std::string, std::pair<Datum, int>>& protections() const { return protections_; }
 
  private:
+  class EffectValues;
   /// Effects with all variables replaced, before anything is changed.
   struct Changes {
     std::vector<Datum> atoms;
@@ -58,10 +59,7 @@ class StepReplay {
   const Operator* FindOperator(const Datum& task, ValueMap* known) const;
   void CheckExclusion(const PlanStep& step, ReplayedStep* taken) const;
   void ProvePrecondition(const PlanStep& step, const ValueMap& known, ReplayedStep* taken);
-  void Resolve(const std::vector<Effect>& effects, const ValueMap& values, ReplayedStep* taken,
-               Changes* changes);
-  void ResolveEach(const Effect& effect, const ValueMap& values, ReplayedStep* taken,
-                   Changes* changes);
+  void Resolve(const std::vector<Effect>& effects, ReplayedStep* taken, Changes* changes);
   void Change(const Changes& deletes, const Changes& adds, ReplayedStep* taken);
   void ChangeProtections(const Changes& deletes, const Changes& adds, ReplayedStep* taken);
   void CheckProtections(ReplayedStep* taken);

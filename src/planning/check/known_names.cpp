@@ -12,14 +12,6 @@
 namespace hires::planning {
 namespace {
 
-void AddGiven(const std::vector<Effect>& effects, GivenPredicates* given) {
-  for (const Effect& effect : effects) {
-    if (effect.kind == Effect::Kind::kAtom) given->names.emplace(effect.term.Head());
-    if (effect.kind == Effect::Kind::kList) given->is_open = true;
-    AddGiven(effect.effects, given);
-  }
-}
-
 /// An atom that a condition asks for, and where.
 struct Asked {
   std::string name;
@@ -171,20 +163,20 @@ std::vector<std::string> UnknownSymbols(const std::vector<Datum>& tasks, const D
   return unknown;
 }
 
-GivenPredicates PredicatesGiven(const Domain& domain, const Problem& problem) {
-  GivenPredicates given;
+PredicateSet PredicatesGiven(const Domain& domain, const Problem& problem) {
+  PredicateSet given;
   for (const auto* facts : {&domain.facts, &problem.facts}) {
     for (const Datum& fact : *facts) given.names.emplace(fact.Head());
   }
   for (const Axiom& axiom : domain.axioms) given.names.emplace(axiom.head.Head());
-  for (const Operator& op : domain.operators) AddGiven(op.adds, &given);
+  for (const Operator& op : domain.operators) CollectPredicates(op.adds, &given);
   return given;
 }
 
 std::vector<std::string> MisspeltPredicates(const Domain& domain, const Problem& problem) {
   std::vector<std::string> warnings;
   if (domain.language == Domain::Language::kHddl) return warnings;
-  const GivenPredicates given = PredicatesGiven(domain, problem);
+  const PredicateSet given = PredicatesGiven(domain, problem);
   if (given.is_open) return warnings;
   std::set<std::string> seen = given.names;
   const Conditions conditions(domain);

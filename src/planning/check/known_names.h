@@ -8,14 +8,9 @@
 
 namespace hires::planning {
 
-/// Names of all predicates that can hold at some time: by facts of domain and problem, heads of
-/// axioms, and effects. `is_open` where an effect adds what a variable stands for, which may be
-/// anything.
-struct GivenPredicates {
-  std::set<std::string> names;
-  bool is_open{false};
-};
-GivenPredicates PredicatesGiven(const Domain& domain, const Problem& problem);
+/// All predicates that can hold at some time: by facts of domain and problem, heads of axioms, and
+/// effects.
+PredicateSet PredicatesGiven(const Domain& domain, const Problem& problem);
 
 /// Those of the tasks' symbols that stand in no fact and nowhere in the domain, each once and with
 /// what is spelt alike: "'gest1' (did you mean 'guest1'?)".

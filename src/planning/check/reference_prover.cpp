@@ -19,10 +19,12 @@ void CollectVariablesOf(const Formula& formula, std::set<std::string>* names) {
 void CollectBoundBy(const Formula& formula, std::set<std::string>* names) {
   switch (formula.kind) {
     case Formula::Kind::kNot:
-    case Formula::Kind::kImply:
     case Formula::Kind::kForall:
+    case Formula::Kind::kExists:
     case Formula::Kind::kEval:
       return;
+    case Formula::Kind::kImply:
+      return CollectBoundBy(formula.parts.at(1), names);
     case Formula::Kind::kSetOf:
     case Formula::Kind::kBagOf:
       return CollectVariables(formula.expression, names);

@@ -168,11 +168,10 @@ bool ReferenceSolver::Step() {
     case Formula::Kind::kAnd:
       return PushAll(cell);
     case Formula::Kind::kOr:
+    case Formula::Kind::kImply:
       return Begin(cell, Choice());
     case Formula::Kind::kNot:
       return TestNot(cell);
-    case Formula::Kind::kImply:
-      return TestImply(cell);
     case Formula::Kind::kForall:
       return TestForall(cell);
     case Formula::Kind::kExists:
@@ -209,6 +208,8 @@ bool ReferenceSolver::TryNext(Choice* choice) {
   switch (cells_[choice->cell].formula->kind) {
     case Formula::Kind::kOr:
       return NextPart(choice);
+    case Formula::Kind::kImply:
+      return NextImplied(choice);
     case Formula::Kind::kAssignEach:
       return NextMember(choice);
     default:
@@ -399,17 +400,21 @@ bool ReferenceSolver::TestNot(const Cell& cell) {
   return true;
 }
 
-bool ReferenceSolver::TestImply(const Cell& cell) {
+/// The first part does not hold; or the second does, which may bind variables.
+bool ReferenceSolver::NextImplied(Choice* choice) {
+  const Cell cell = cells_[choice->cell];
+  if (choice->position > 1) return false;
   std::vector<Literal> why;
   std::vector<Literal> why_not;
-  if (!FindsProof(cell.formula->parts.at(0), cell, &why, &why_not)) {
-    AddSupport(why_not);
-  } else if (FindsProof(cell.formula->parts.at(1), cell, &why, &why_not)) {
-    AddSupport(why);
-  } else {
-    return false;
+  const bool holds = FindsProof(cell.formula->parts.at(0), cell, &why, &why_not);
+  AddSupport(holds ? why : why_not);
+  if (choice->position == 0 && !holds) {
+    choice->position = 1;
+    goal_ = cell.next;
+    return true;
   }
-  goal_ = cell.next;
+  choice->position = 2;
+  goal_ = PushGoal(cell.formula->parts.at(1), cell, cell.next);
   return true;
 }
 
@@ -438,8 +443,13 @@ bool ReferenceSolver::TestForall(const Cell& cell) {
   return true;
 }
 
+/// Binds nothing that is seen from outside.
 bool ReferenceSolver::PushExists(const Cell& cell) {
-  const Formula& formula = Keep(WithOwnVariables(*cell.formula, FreshSuffix()));
+  Formula inner = *cell.formula;
+  for (const std::string& variable : VariablesOf(inner)) {
+    if (!session_->values.IsBound(variable)) inner.variables.push_back(variable);
+  }
+  const Formula& formula = Keep(WithOwnVariables(inner, FreshSuffix()));
   goal_ = cell.next;
   for (auto part = formula.parts.rbegin(); part != formula.parts.rend(); ++part) {
     goal_ = PushGoal(*part, cell, goal_);

@@ -99,12 +99,12 @@ class ReferenceSolver {
                    const std::string& suffix);
   bool Commit(const Cell& cell);
   bool NextPart(Choice* choice);
+  bool NextImplied(Choice* choice);
   bool NextMember(Choice* choice);
   void NoteFailure(const Choice& choice);
 
   bool PushAll(const Cell& cell);
   bool TestNot(const Cell& cell);
-  bool TestImply(const Cell& cell);
   bool TestForall(const Cell& cell);
   bool PushExists(const Cell& cell);
   bool TestEqual(const Cell& cell);

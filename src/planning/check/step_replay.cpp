@@ -6,6 +6,8 @@
 #include <set>
 #include <utility>
 
+#include "hires/planning/domain.h"
+
 namespace hires::planning {
 namespace {
 
@@ -37,6 +39,56 @@ Datum ExclusionOf(const Datum& task, const std::string& name) {
 Datum Marked(const char* mark, const Datum& atom) { return MakeList({MakeSymbol(mark), atom}); }
 
 }  // namespace
+
+/// What CollectAtoms asks, answered with data.
+class StepReplay::EffectValues : public DatumAtoms {
+ public:
+  EffectValues(StepReplay* replay, ReplayedStep* taken, Changes* changes)
+      : replay_(*replay), taken_(*taken), changes_(*changes) {
+    SetValues(taken->values);
+  }
+
+  Datum Instantiate(const Effect& effect) {
+    return replay_.prover_.evaluator().Instantiate(effect.term, substitution_);
+  }
+
+  /// The condition's bindings are all found in the state the step comes to.
+  template <typename Visit>
+  void ForEachBinding(const Effect& effect, const Visit& visit) {
+    const ValueMap outer = values_;
+    ProofQuestion question{effect.condition, replay_.facts_, replay_.moment_};
+    question.known = outer;
+    question.explain = replay_.explain_;
+    question.reads_all = true;
+    for (const Proof& proof : replay_.prover_.AllProofs(question, &taken_.reads)) {
+      ValueMap inner = outer;
+      inner.insert(proof.values.begin(), proof.values.end());
+      SetValues(std::move(inner));
+      visit();
+    }
+    SetValues(outer);
+  }
+
+  void Take(const Datum& atom) {
+    if (IsProtection(atom)) {
+      changes_.protections.push_back(atom.items[1]);
+    } else {
+      changes_.atoms.push_back(atom);
+    }
+  }
+
+ private:
+  void SetValues(ValueMap values) {
+    values_ = std::move(values);
+    substitution_ = ToSubstitution(values_);
+  }
+
+  StepReplay& replay_;
+  ReplayedStep& taken_;
+  Changes& changes_;
+  ValueMap values_;
+  Substitution substitution_;
+};
 
 StepReplay::StepReplay(const Domain& domain, const Problem& problem, const Functions& functions,
                        bool explain)
@@ -79,8 +131,8 @@ ReplayedStep StepReplay::Take(const PlanStep& step) {
   taken.cost = prover_.evaluator().EvaluateCost(taken.op->cost, ToSubstitution(taken.values));
   Changes deletes;
   Changes adds;
-  Resolve(taken.op->deletes, taken.values, &taken, &deletes);
-  Resolve(taken.op->adds, taken.values, &taken, &adds);
+  Resolve(taken.op->deletes, &taken, &deletes);
+  Resolve(taken.op->adds, &taken, &adds);
   ++moment_;
   Change(deletes, adds, &taken);
   ChangeProtections(deletes, adds, &taken);
@@ -118,62 +170,40 @@ void StepReplay::ProvePrecondition(const PlanStep& step, const ValueMap& known,
                                      At(domain_.source, taken->op->place)));
 }
 
-void StepReplay::Resolve(const std::vector<Effect>& effects, const ValueMap& values,
-                         ReplayedStep* taken, Changes* changes) {
-  const Substitution substitution = ToSubstitution(values);
-  for (const Effect& effect : effects) {
-    if (effect.kind == Effect::Kind::kForall) {
-      ResolveEach(effect, values, taken, changes);
-      continue;
-    }
-    const Datum term = prover_.evaluator().Instantiate(effect.term, substitution);
-    const bool is_list = effect.kind == Effect::Kind::kList;
-    for (const Datum& atom : is_list ? term.items : std::vector<Datum>{term}) {
-      const bool is_protection =
-          effect.kind == Effect::Kind::kProtection || atom.Head() == ":protection";
-      const Datum& inner = atom.Head() == ":protection" ? atom.items.at(1) : atom;
-      (is_protection ? changes->protections : changes->atoms).push_back(inner);
-    }
-  }
-}
-
-/// The condition's bindings are all found in the state the step comes to.
-void StepReplay::ResolveEach(const Effect& effect, const ValueMap& values, ReplayedStep* taken,
-                             Changes* changes) {
-  ProofQuestion question{effect.condition, facts_, moment_};
-  question.known = values;
-  question.explain = explain_;
-  question.reads_all = true;
-  for (const Proof& proof : prover_.AllProofs(question, &taken->reads)) {
-    ValueMap inner = values;
-    inner.insert(proof.values.begin(), proof.values.end());
-    Resolve(effect.effects, inner, taken, changes);
-  }
+void StepReplay::Resolve(const std::vector<Effect>& effects, ReplayedStep* taken,
+                         Changes* changes) {
+  EffectValues values(this, taken, changes);
+  CollectAtoms(effects, &values);
 }
 
 void StepReplay::Change(const Changes& deletes, const Changes& adds, ReplayedStep* taken) {
   for (const Datum& atom : deletes.atoms) {
-    const bool is_gone = IsGround(atom) && facts_.Remove(atom, moment_);
+    if (!IsFact(atom)) continue;  // it never holds
+    const bool is_gone = facts_.Remove(atom, moment_);
     if (Contains(adds.atoms, atom) || Contains(taken->deletes, atom)) continue;
     if (is_gone) taken->deletes.push_back(atom);
     if (!is_gone) taken->reads.push_back(atom);
   }
   for (const Datum& atom : adds.atoms) {
-    if (!IsGround(atom)) {
-      taken->wrong.push_back("adds " + ToString(atom) + ", which has unbound variables");
+    if (!IsFact(atom)) {
+      taken->wrong.push_back("adds " + ToString(atom) + ", which " +
+                             (IsGround(atom) ? "is no fact" : "has unbound variables"));
     } else if (!Contains(taken->adds, atom)) {
       taken->adds.push_back(atom);
     }
   }
   // The first of the list is the newest fact.
   for (auto atom = adds.atoms.rbegin(); atom != adds.atoms.rend(); ++atom) {
-    if (IsGround(*atom)) facts_.Add(*atom, moment_);
+    if (IsFact(*atom)) facts_.Add(*atom, moment_);
   }
 }
 
 void StepReplay::ChangeProtections(const Changes& deletes, const Changes& adds,
                                    ReplayedStep* taken) {
-  taken->protects = adds.protections;
+  for (const Datum& atom : adds.protections) {
+    if (IsFact(atom)) taken->protects.push_back(atom);
+    if (!IsFact(atom)) taken->wrong.push_back("protects " + ToString(atom) + ", which is no fact");
+  }
   taken->unprotects = deletes.protections;
   for (const Datum& atom : deletes.protections) {
     taken->reads.push_back(atom);
@@ -181,9 +211,9 @@ void StepReplay::ChangeProtections(const Changes& deletes, const Changes& adds,
     const auto found = protections_.find(ToString(atom));
     if (found != protections_.end() && --found->second.second == 0) protections_.erase(found);
   }
-  for (const Datum& atom : adds.protections) {
+  for (const Datum& atom : taken->protects) {
     taken->reads.push_back(atom);
-    taken->reads.push_back(Marked(":protection", atom));
+    taken->reads.push_back(DatumAtoms::Protection(atom));
     auto& [protected_atom, count] = protections_[ToString(atom)];
     protected_atom = atom;
     ++count;

@@ -7,6 +7,7 @@
 #include "hires/base/check.h"
 #include "hires/base/text.h"
 #include "hires/planning/datum_reader.h"
+#include "hires/planning/domain.h"
 #include "planning/language/hddl_effect.h"
 #include "planning/language/hddl_formula.h"
 #include "planning/language/hddl_network.h"
@@ -107,7 +108,7 @@ class DomainReader {
     CollectStaticConditions();
     for (const Datum* form : AllOf(sections, ":method")) ReadMethod(*form);
     AddMissingMethods();
-    domain_.facts = TypeFacts(spot_.Within("(:constants ...)"), vocabulary_, 0, 0);
+    domain_.facts = TypeFacts(spot_.Within("(:constants ...)"), vocabulary_, nullptr);
     domain_.vocabulary = std::make_shared<HddlVocabulary>(std::move(vocabulary_));
     return std::move(domain_);
   }
@@ -187,19 +188,8 @@ class DomainReader {
     goals.insert(goals.end(), effects.value_atoms.begin(), effects.value_atoms.end());
   }
 
-  static void AddPredicates(const std::vector<Effect>& effects, std::set<std::string>* predicates) {
-    for (const Effect& effect : effects) {
-      if (effect.kind == Effect::Kind::kAtom) predicates->insert(std::string(effect.term.Head()));
-      AddPredicates(effect.effects, predicates);
-    }
-  }
-
   void CollectStaticConditions() {
-    std::set<std::string> changed;
-    for (const Operator& op : domain_.operators) {
-      AddPredicates(op.deletes, &changed);
-      AddPredicates(op.adds, &changed);
-    }
+    const PredicateSet changed = ChangingPredicates(domain_);
     for (const Operator& op : domain_.operators) {
       HddlVocabulary::StaticCondition condition;
       for (std::size_t i = 1; i < op.head.items.size(); ++i) {
@@ -207,7 +197,7 @@ class DomainReader {
       }
       for (const Formula& goal : op.precondition.condition.parts) {
         const std::string predicate(goal.term.Head());
-        if (goal.kind != Formula::Kind::kAtom || changed.count(predicate) > 0) continue;
+        if (goal.kind != Formula::Kind::kAtom || changed.MayHave(predicate)) continue;
         if (vocabulary_.predicates.count(predicate) > 0) condition.atoms.push_back(goal.term);
       }
       vocabulary_.static_conditions[op.head.items[0].text.substr(1)] = std::move(condition);
@@ -311,17 +301,14 @@ class ProblemReader {
         vocabulary_(*domain.vocabulary) {
     problem_.name = definition_.name;
     problem_.source = source;
-    problem_.domain = domain.name;
   }
 
   Problem Read() {
     const Sections sections = ReadSections(spot_, definition_.form, ProblemSections(), {});
-    CheckDomain(sections);
+    ReadDomainName(sections);
     if (const Datum* section = OneOf(sections, ":requirements")) {
       CheckRequirements(spot_.Within("(:requirements ...)"), *section);
     }
-    const std::size_t num_constants = vocabulary_.object_order.size();
-    const std::size_t num_types = vocabulary_.types.size();
     if (const Datum* section = OneOf(sections, ":objects")) {
       ReadObjects(spot_.Within("(:objects ...)"), *section, &vocabulary_);
     }
@@ -332,23 +319,24 @@ class ProblemReader {
     if (const Datum* section = OneOf(sections, ":metric")) CheckMetric(*section);
     // After the conditions, which may have made types of their own by (either ...).
     problem_.facts =
-        TypeFacts(spot_.Within("(:objects ...)"), vocabulary_, num_constants, num_types);
+        TypeFacts(spot_.Within("(:objects ...)"), vocabulary_, domain_.vocabulary.get());
     if (const Datum* section = OneOf(sections, ":init")) ReadInit(*section);
     return std::move(problem_);
   }
 
  private:
-  void CheckDomain(const Sections& sections) const {
+  void ReadDomainName(const Sections& sections) {
     const Datum* section = OneOf(sections, ":domain");
     if (section == nullptr) {
       spot_.Fail(definition_.form,
                  fmt::format("(:domain ...) is missing; add (:domain {})", domain_.name));
     }
-    if (section->items.size() != 2 || !section->items[1].IsSymbol(domain_.name)) {
-      spot_.Fail(*section, fmt::format("{} came, the domain read is '{}' ({}); give both files of "
-                                       "one domain",
-                                       Excerpt(*section), domain_.name, domain_.source));
+    if (section->items.size() != 2) {
+      spot_.Fail(*section,
+                 fmt::format("{} came, wanted (:domain {})", Excerpt(*section), domain_.name));
     }
+    problem_.domain = RequireName(spot_, section->items[1], "the name of a domain");
+    problem_.domain_place = section->place;
   }
 
   const Datum& HtnSection(const Sections& sections) const {

@@ -29,7 +29,7 @@ Domain ReadHddlDomain(std::string_view text, const std::string& source);
 
 /// The only problem of an HDDL text, checked against its domain; a domain beside it is left alone.
 /// @pre `domain` was read by ReadHddlDomain.
-/// @throws base::ConfigError as above, also where the problem is written for another domain.
+/// @throws base::ConfigError as above.
 Problem ReadHddlProblem(std::string_view text, const std::string& source, const Domain& domain);
 
 }  // namespace hires::planning

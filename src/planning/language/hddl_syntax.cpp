@@ -70,6 +70,23 @@ std::vector<std::string> ReadTypes(const HddlSpot& spot, const Datum& type) {
   return types;
 }
 
+/// `-`, or glued to what follows, as in `?p -plate`.
+bool IsDash(const Datum& item) {
+  return item.kind == Datum::Kind::kSymbol && item.text.compare(0, 1, "-") == 0;
+}
+
+/// What stands behind the dash at `*index`, to which that moves.
+Datum TypeBehindDash(const HddlSpot& spot, const Datum& list, std::size_t* index) {
+  Datum dash = list.items[*index];
+  if (dash.text.size() == 1) {
+    if (++*index == list.items.size()) spot.Fail(dash, "a '-' has no type behind it; add one");
+    return list.items[*index];
+  }
+  dash.text.erase(0, 1);
+  ++dash.place.column;
+  return dash;
+}
+
 void RequireKind(const HddlSpot& spot, const Datum& datum, Datum::Kind kind) {
   if (kind == Datum::Kind::kSymbol) {
     RequireName(spot, datum, "a name");
@@ -126,17 +143,17 @@ std::vector<HddlTyped> ReadTypedList(const HddlSpot& spot, const Datum& list, st
   std::size_t untyped = 0;  // first entry whose type is still to come
   for (std::size_t i = begin; i < list.items.size(); ++i) {
     const Datum& item = list.items[i];
-    if (!item.IsSymbol("-")) {
+    if (!IsDash(item)) {
       RequireKind(spot, item, kind);
       typed.push_back({&item, {}, item.place});
       continue;
     }
     if (untyped == typed.size()) spot.Fail(item, "a '-' has no name before it; take it away");
-    if (++i == list.items.size()) spot.Fail(item, "a '-' has no type behind it; add one");
-    const std::vector<std::string> types = ReadTypes(spot, list.items[i]);
+    const Datum type = TypeBehindDash(spot, list, &i);
+    const std::vector<std::string> types = ReadTypes(spot, type);
     for (; untyped < typed.size(); ++untyped) {
       typed[untyped].types = types;
-      typed[untyped].type_place = list.items[i].place;
+      typed[untyped].type_place = type.place;
     }
   }
   if (kind == Datum::Kind::kVariable) RequireFew(spot, list, typed.size());

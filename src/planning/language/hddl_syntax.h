@@ -33,7 +33,7 @@ struct HddlTyped {
   Place type_place;
 };
 
-/// Reads `a b - t c - (either t u) d`, items `begin` and after of a list.
+/// Reads `a b - t c - (either t u) d`, items `begin` and after of a list; `-t` is read as `- t`.
 /// @param kind  kSymbol for names, kVariable for parameters.
 /// @throws ConfigError also where a name stands twice (`unique`).
 std::vector<HddlTyped> ReadTypedList(const HddlSpot& spot, const Datum& list, std::size_t begin,

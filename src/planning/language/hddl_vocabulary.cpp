@@ -19,8 +19,20 @@ constexpr std::size_t kMaxTypeFacts = 5'000'000;
 int AddType(const std::string& name, HddlVocabulary* vocabulary) {
   const auto [entry, is_new] =
       vocabulary->type_index.emplace(name, static_cast<int>(vocabulary->types.size()));
-  if (is_new) vocabulary->types.push_back({name, {}, {}, {}});
+  if (is_new) vocabulary->types.push_back({name, {}, {}, {}, false});
   return entry->second;
+}
+
+void RequireFewTypes(const HddlSpot& spot, const Datum& at, const HddlVocabulary& vocabulary) {
+  if (vocabulary.types.size() <= kMaxTypes) return;
+  spot.Fail(at, fmt::format("{} types are declared, at most {} are read", vocabulary.types.size(),
+                            kMaxTypes));
+}
+
+void AddAncestors(const HddlVocabulary::Type& parent, std::vector<bool>* is_a) {
+  for (std::size_t i = 0; i < parent.is_a.size(); ++i) {
+    if (parent.is_a[i]) (*is_a)[i] = true;
+  }
 }
 
 /// Fills in what `type` is, its parents first.
@@ -41,8 +53,7 @@ void FillAncestors(const HddlSpot& spot, const Datum& section, int type, std::ve
   is_a[type] = is_a[HddlVocabulary::kObject] = true;
   for (const int parent : self.parents) {
     FillAncestors(spot, section, parent, path, vocabulary);
-    const std::vector<bool>& above = vocabulary->types[parent].is_a;
-    for (std::size_t i = 0; i < above.size(); ++i) is_a[i] = is_a[i] || above[i];
+    AddAncestors(vocabulary->types[parent], &is_a);
   }
   path->pop_back();
   self.is_a = std::move(is_a);
@@ -58,6 +69,36 @@ int EitherType(std::vector<int> members, HddlVocabulary* vocabulary) {
   const int type = AddType(base::Join(names, "/"), vocabulary);
   vocabulary->types[type].members = std::move(members);
   return type;
+}
+
+/// The type of objects listed with all of `parents`, which no file can name.
+HddlVocabulary::Type JointType(std::vector<int> parents, const HddlVocabulary& vocabulary) {
+  HddlVocabulary::Type joint{"", {}, {}, std::vector<bool>(vocabulary.types.size()), true};
+  std::vector<std::string> names;
+  for (const int parent : parents) {
+    names.push_back(vocabulary.types[parent].name);
+    AddAncestors(vocabulary.types[parent], &joint.is_a);
+  }
+  joint.name = base::Join(names, " and ");
+  joint.parents = std::move(parents);
+  return joint;
+}
+
+/// The number of the type below both, which is made where there is none.
+int TypeBelow(const HddlSpot& spot, const Datum& at, int a, int b, HddlVocabulary* vocabulary) {
+  if (IsA(*vocabulary, a, b)) return a;
+  if (IsA(*vocabulary, b, a)) return b;
+  std::vector<HddlVocabulary::Type>& types = vocabulary->types;
+  std::vector<int> parents = types[a].is_joint ? types[a].parents : std::vector<int>{a};
+  parents.push_back(b);
+  std::sort(parents.begin(), parents.end());
+  const auto found = std::find_if(types.begin(), types.end(), [&](const auto& type) {
+    return type.is_joint && type.parents == parents;
+  });
+  if (found != types.end()) return static_cast<int>(found - types.begin());
+  types.push_back(JointType(std::move(parents), *vocabulary));
+  RequireFewTypes(spot, at, *vocabulary);
+  return static_cast<int>(types.size()) - 1;
 }
 
 void AddSignature(const HddlSpot& spot, const Datum& at, HddlVocabulary::Signature signature,
@@ -89,6 +130,12 @@ void CheckArgumentType(const HddlSpot& spot, const Datum& argument, int type, in
                                   signature.name, vocabulary.types[wanted].name));
 }
 
+bool IsOfType(const HddlVocabulary& vocabulary, const std::string& object, int type) {
+  if (type >= static_cast<int>(vocabulary.types.size())) return false;
+  const auto found = vocabulary.objects.find(object);
+  return found != vocabulary.objects.end() && IsA(vocabulary, found->second, type);
+}
+
 }  // namespace
 
 void ReadTypeSection(const HddlSpot& spot, const Datum* section, HddlVocabulary* vocabulary) {
@@ -103,10 +150,7 @@ void ReadTypeSection(const HddlSpot& spot, const Datum* section, HddlVocabulary*
       if (parent != HddlVocabulary::kObject) vocabulary->types[type].parents.push_back(parent);
     }
   }
-  if (vocabulary->types.size() > kMaxTypes) {
-    spot.Fail(*section, fmt::format("{} types are declared, at most {} are read",
-                                    vocabulary->types.size(), kMaxTypes));
-  }
+  RequireFewTypes(spot, *section, *vocabulary);
   std::vector<int> path;
   for (std::size_t type = 0; type < vocabulary->types.size(); ++type) {
     FillAncestors(spot, *section, static_cast<int>(type), &path, vocabulary);
@@ -143,19 +187,18 @@ int TypeOf(const HddlSpot& spot, const HddlTyped& typed, HddlVocabulary* vocabul
 }
 
 void ReadObjects(const HddlSpot& spot, const Datum& section, HddlVocabulary* vocabulary) {
-  for (const HddlTyped& typed : ReadTypedList(spot, section, 1, Datum::Kind::kSymbol)) {
+  for (const HddlTyped& typed : ReadTypedList(spot, section, 1, Datum::Kind::kSymbol, false)) {
     if (typed.types.size() > 1) {
-      spot.Fail(*typed.datum, fmt::format("'{}' is of two types; an object has one, declare a "
-                                          "type for it",
-                                          typed.datum->text));
+      spot.Fail(*typed.datum, fmt::format("'{0}' is of two types by (either ...), which does not "
+                                          "say of which; list it with each type that it is of, as "
+                                          "in {0} - {1} {0} - {2}",
+                                          typed.datum->text, typed.types[0], typed.types[1]));
     }
     const int type = TypeOf(spot, typed, vocabulary);
     const auto [entry, is_new] = vocabulary->objects.emplace(typed.datum->text, type);
     if (is_new) vocabulary->object_order.push_back(typed.datum->text);
-    if (!is_new && entry->second != type) {
-      spot.Fail(*typed.datum, fmt::format("'{}' is of type {} here and of type {} before; keep one",
-                                          typed.datum->text, vocabulary->types[type].name,
-                                          vocabulary->types[entry->second].name));
+    if (!is_new) {
+      entry->second = TypeBelow(spot, *typed.datum, entry->second, type, vocabulary);
     }
   }
 }
@@ -181,6 +224,7 @@ void ReadPredicates(const HddlSpot& spot, const Datum& section, HddlVocabulary* 
 
 void ReadFunctions(const HddlSpot& spot, const Datum& section, HddlVocabulary* vocabulary) {
   for (std::size_t i = 1; i < section.items.size(); ++i) {
+    if (section.items[i].IsSymbol("-number")) continue;
     if (section.items[i].IsSymbol("-")) {  // (f ?x) - number
       if (i + 1 < section.items.size() && section.items[i + 1].IsSymbol("number")) {
         ++i;
@@ -273,14 +317,14 @@ std::string TypePredicate(const HddlVocabulary& vocabulary, int type) {
 std::string ValuePredicate(const std::string& function) { return "%value-" + function; }
 
 std::vector<Datum> TypeFacts(const HddlSpot& spot, const HddlVocabulary& vocabulary,
-                             std::size_t known_objects, std::size_t known_types) {
+                             const HddlVocabulary* known) {
   std::vector<Datum> facts;
-  for (std::size_t type = 0; type < vocabulary.types.size(); ++type) {
-    const Datum predicate = MakeSymbol(TypePredicate(vocabulary, static_cast<int>(type)));
-    for (std::size_t i = type < known_types ? known_objects : 0; i < vocabulary.object_order.size();
-         ++i) {
-      const std::string& name = vocabulary.object_order[i];
-      if (!IsA(vocabulary, vocabulary.objects.at(name), static_cast<int>(type))) continue;
+  for (int type = 0; type < static_cast<int>(vocabulary.types.size()); ++type) {
+    if (vocabulary.types[type].is_joint) continue;
+    const Datum predicate = MakeSymbol(TypePredicate(vocabulary, type));
+    for (const std::string& name : vocabulary.object_order) {
+      if (!IsOfType(vocabulary, name, type)) continue;
+      if (known != nullptr && IsOfType(*known, name, type)) continue;
       facts.push_back(MakeList({predicate, MakeSymbol(name)}));
       if (facts.size() > kMaxTypeFacts) {
         spot.Fail(Datum{}, fmt::format("the objects have more than {} types in all; use fewer "

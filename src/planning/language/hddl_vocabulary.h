@@ -19,6 +19,7 @@ struct HddlVocabulary {
     std::vector<int> parents;  ///< in the order of declaration; none: object
     std::vector<int> members;  ///< of an (either ...); else empty
     std::vector<bool> is_a;    ///< by type, as far as those existed: itself and its ancestors
+    bool is_joint{false};      ///< of objects listed with several types: the parents
   };
   struct Signature {
     std::string kind;  ///< "predicate", "function", "task", "action"
@@ -69,7 +70,8 @@ bool IsA(const HddlVocabulary& vocabulary, int type, int other);
 int TypeOf(const HddlSpot& spot, const HddlTyped& typed, HddlVocabulary* vocabulary);
 
 /// Reads constants or objects, items 1 and after of `section`, into `vocabulary->objects`.
-/// @throws ConfigError where a name has another type already.
+/// One that is listed with several types, here or before, is of all of them.
+/// @throws ConfigError for (either ...) and where that makes too many types.
 void ReadObjects(const HddlSpot& spot, const Datum& section, HddlVocabulary* vocabulary);
 
 /// Reads a typed list of parameters as a signature.
@@ -101,9 +103,10 @@ void CheckOpenObjects(const HddlSpot& spot, const std::string& domain_source,
 
 std::string TypePredicate(const HddlVocabulary& vocabulary, int type);  ///< "%type-place"
 std::string ValuePredicate(const std::string& function);                ///< "%value-length"
-/// The atoms that say of what types objects are, in the order of declaration, without what is known
-/// of the first `known_objects` and the first `known_types`.
+/// The atoms that say of what types objects are, in the order of declaration, without what `known`
+/// (null: nothing) says already.
+/// @pre `known` has the first of the types of `vocabulary`.
 std::vector<Datum> TypeFacts(const HddlSpot& spot, const HddlVocabulary& vocabulary,
-                             std::size_t known_objects, std::size_t known_types);
+                             const HddlVocabulary* known);
 
 }  // namespace hires::planning::hddl

@@ -13,6 +13,7 @@
 #include "hires/base/param_reader.h"
 #include "hires/base/text.h"
 #include "hires/planning/datum_reader.h"
+#include "hires/planning/domain.h"
 
 namespace hires::planning {
 namespace {
@@ -160,30 +161,16 @@ std::map<std::string, int> ReadResources(ParamReader in, const OperatorEntry& en
 
 // ---------------------------------------------------------------------------------- disturbance --
 
-void CollectPredicates(const Effect& effect, std::set<std::string>* names) {
-  if (effect.kind == Effect::Kind::kAtom) names->emplace(effect.term.Head());
-  for (const Effect& nested : effect.effects) CollectPredicates(nested, names);
-}
-
-/// Those that steps change: no others can be disturbed for a while.
-std::vector<std::string> ChangingPredicates(const Domain& domain) {
-  std::set<std::string> names;
-  for (const Operator& op : domain.operators) {
-    for (const Effect& effect : op.deletes) CollectPredicates(effect, &names);
-    for (const Effect& effect : op.adds) CollectPredicates(effect, &names);
-  }
-  return {names.begin(), names.end()};
-}
-
-Datum ReadPattern(const ParamReader& in, const std::string& text,
-                  const std::vector<std::string>& predicates) {
+/// An atom that steps change: no others can be disturbed for a while.
+Datum ReadPattern(const ParamReader& in, const std::string& text, const PredicateSet& predicates) {
   std::vector<Datum> data = ReadData(text, "disturbs");
   if (data.size() != 1 || !data[0].IsList() || data[0].Head().empty()) {
     in.Fail("disturbs", fmt::format("'{}' is no atom; wanted (predicate arguments...)", text));
   }
   const std::string predicate(data[0].Head());
-  if (!Contains(predicates, predicate)) {
-    in.Fail("disturbs", base::UnknownName("predicate that steps change", predicate, predicates));
+  if (!predicates.MayHave(predicate)) {
+    in.Fail("disturbs", base::UnknownName("predicate that steps change", predicate,
+                                          {predicates.names.begin(), predicates.names.end()}));
   }
   return std::move(data[0]);
 }

@@ -25,6 +25,30 @@ std::string SidecarOf(const std::string& domain_path) {
   return std::filesystem::exists(path) ? path.string() : "";
 }
 
+/// Published files differ in this now and then, and belong together nevertheless.
+void WarnOfOtherDomain(const Domain& domain, Problem* problem) {
+  if (problem->domain.empty() || problem->domain == domain.name) return;
+  problem->warnings.push_back(
+      Located(problem->source, problem->domain_place,
+              fmt::format("problem '{}' is written for the domain '{}', the domain read is '{}' "
+                          "({}); it is taken for a problem of that one; correct one of the names",
+                          problem->name, problem->domain, domain.name, domain.source)));
+}
+
+std::vector<Problem> ReadProblems(const std::string& path, const Domain& domain) {
+  const std::string text = base::ReadTextFile(path);
+  const Domain::Language language = LanguageOf(text, path);
+  if (language != domain.language) {
+    throw base::ConfigError(
+        fmt::format("{}: is written in {}, the domain {} in {}; name files that belong together",
+                    path, NameOf(language), domain.source, NameOf(domain.language)));
+  }
+  if (language == Domain::Language::kHddl) return {ReadHddlProblem(text, path, domain)};
+  std::vector<Problem> problems = ReadShop2Problems(text, path);
+  for (const Problem& problem : problems) CheckTasks(problem, domain);
+  return problems;
+}
+
 }  // namespace
 
 Domain::Language LanguageOf(std::string_view text, const std::string& source) {
@@ -57,16 +81,8 @@ void CheckSidecar(const std::string& domain_path, const Domain& domain) {
 }
 
 std::vector<Problem> LoadProblems(const std::string& path, const Domain& domain) {
-  const std::string text = base::ReadTextFile(path);
-  const Domain::Language language = LanguageOf(text, path);
-  if (language != domain.language) {
-    throw base::ConfigError(
-        fmt::format("{}: is written in {}, the domain {} in {}; name files that belong together",
-                    path, NameOf(language), domain.source, NameOf(domain.language)));
-  }
-  if (language == Domain::Language::kHddl) return {ReadHddlProblem(text, path, domain)};
-  std::vector<Problem> problems = ReadShop2Problems(text, path);
-  for (const Problem& problem : problems) CheckTasks(problem, domain);
+  std::vector<Problem> problems = ReadProblems(path, domain);
+  for (Problem& problem : problems) WarnOfOtherDomain(domain, &problem);
   return problems;
 }
 

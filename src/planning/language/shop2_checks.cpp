@@ -8,6 +8,7 @@
 
 #include "hires/base/text.h"
 #include "hires/planning/datum_reader.h"
+#include "hires/planning/reference_prover.h"
 #include "hires/planning/shop2_reader.h"
 #include "planning/language/shop2_parts.h"
 
@@ -126,7 +127,7 @@ void CheckOperatorNames(const Domain& domain) {
   }
 }
 
-// ------------------------------------------------------------------------------------ unbound adds
+// --------------------------------------------------------------------------------- unbound effects
 
 void CollectFrom(const Formula& formula, std::set<std::string>* bound) {
   std::vector<std::string> found = formula.variables;
@@ -136,37 +137,63 @@ void CollectFrom(const Formula& formula, std::set<std::string>* bound) {
   for (const Formula& part : formula.parts) CollectFrom(part, bound);
 }
 
-void CheckBound(const Construct& in, const Effect& effect, const std::set<std::string>& bound) {
-  std::vector<std::string> used;
-  CollectVariables(effect.term, &used);
-  for (const std::string& name : used) {
-    if (bound.count(name) > 0) continue;
-    Fail(in, effect.place,
-         fmt::format("{} in an add is neither in the head nor in the precondition, so that nothing "
-                     "can bind it; bind it there or correct its name",
-                     name));
-  }
-}
+/// What a condition binds is added to the variables that were bound before.
+using Collect = void (*)(const Formula& condition, std::set<std::string>* bound);
 
-void CheckAllBound(const Construct& in, const std::vector<Effect>& effects,
-                   const std::set<std::string>& bound) {
+/// Variables of effects that nothing binds are reported, each with its effect.
+template <typename Report>
+void FindUnbound(const std::vector<Effect>& effects, Collect collect,
+                 const std::set<std::string>& bound, const Report& report) {
   for (const Effect& effect : effects) {
-    CheckBound(in, effect, bound);
+    std::vector<std::string> used;
+    CollectVariables(effect.term, &used);
+    for (const std::string& name : used) {
+      if (bound.count(name) == 0) report(effect, name);
+    }
     if (effect.kind != Effect::Kind::kForall) continue;
     std::set<std::string> bound_inside = bound;
-    CollectFrom(effect.condition, &bound_inside);
-    CheckAllBound(in, effect.effects, bound_inside);
+    collect(effect.condition, &bound_inside);
+    FindUnbound(effect.effects, collect, bound_inside, report);
   }
 }
 
-void CheckAdds(const Domain& domain) {
-  for (const Operator& op : domain.operators) {
-    std::vector<std::string> in_head;
-    CollectVariables(op.head, &in_head);
-    std::set<std::string> bound(in_head.begin(), in_head.end());
-    CollectFrom(op.precondition.condition, &bound);
-    const Construct in{domain.source, fmt::format("operator '{}'", op.head.Head())};
-    CheckAllBound(in, op.adds, bound);
+template <typename Report>
+void FindUnbound(const Operator& op, const std::vector<Effect>& effects, Collect collect,
+                 const Report& report) {
+  std::vector<std::string> in_head;
+  CollectVariables(op.head, &in_head);
+  std::set<std::string> bound(in_head.begin(), in_head.end());
+  collect(op.precondition.condition, &bound);
+  FindUnbound(effects, collect, bound, report);
+}
+
+/// Variables that a proof binds: not those that stand under a `not` and its like alone.
+void CollectBinders(const Formula& formula, std::set<std::string>* bound) {
+  const std::set<std::string> binders = VariablesBoundBy(formula);
+  bound->insert(binders.begin(), binders.end());
+}
+
+/// As it is written: a reader's own names have a `#`.
+std::string WrittenName(const std::string& name) {
+  return name.compare(0, 3, "?_#") == 0 ? "?" : name.substr(0, name.find('#'));
+}
+
+void CheckEffects(Domain* domain) {
+  for (const Operator& op : domain->operators) {
+    const Construct in{domain->source, fmt::format("operator '{}'", op.head.Head())};
+    FindUnbound(op, op.adds, CollectFrom, [&](const Effect& add, const std::string& name) {
+      Fail(in, add.place,
+           fmt::format("{} in an add is neither in the head nor in the precondition, so that "
+                       "nothing can bind it; bind it there or correct its name",
+                       WrittenName(name)));
+    });
+    FindUnbound(op, op.deletes, CollectBinders, [&](const Effect& gone, const std::string& name) {
+      domain->warnings.push_back(
+          Located(in.source, gone.place,
+                  fmt::format("{}: {} in the delete {} is never bound, so that it deletes nothing; "
+                              "bind it in the head or in the precondition or correct its name",
+                              in.name, WrittenName(name), Excerpt(gone.term))));
+    });
   }
 }
 
@@ -186,7 +213,7 @@ void CheckSubtasks(Domain* domain) {
 
 void CheckDomain(Domain* domain) {
   CheckOperatorNames(*domain);
-  CheckAdds(*domain);
+  CheckEffects(domain);
   CheckSubtasks(domain);
 }
 

@@ -114,6 +114,14 @@ Datum ReadExpression(Datum datum) {
   return datum;
 }
 
+Datum Unquoted(Datum term) {
+  if (term.Head() == "call") return term;
+  if (term.Head() == "quote" && term.items.size() == 2) return Unquoted(Datum(term.items[1]));
+  for (Datum& item : term.items) item = Unquoted(std::move(item));
+  for (Datum& tail : term.tail) tail = Unquoted(std::move(tail));
+  return term;
+}
+
 void CollectVariables(const Datum& datum, std::vector<std::string>* variables) {
   if (datum.kind == Datum::Kind::kVariable) variables->push_back(datum.text);
   for (const Datum& item : datum.items) CollectVariables(item, variables);

@@ -139,7 +139,7 @@ Formula ReadCollection(const Construct& in, const Datum& datum) {
   WantArguments(in, datum, 3, 3, kForm);
   WantVariable(in, datum.items[3], kForm);
   Formula formula = Make(kKind, datum);
-  formula.term = datum.items[1];
+  formula.term = Unquoted(datum.items[1]);
   formula.parts.push_back(ReadGoal(in, datum.items[2]));
   formula.expression = datum.items[3];
   return formula;
@@ -193,7 +193,7 @@ Formula ReadGoalList(const Construct& in, const Datum& datum, ListMeans means) {
 
 Formula ReadTerm(const Datum& datum, Formula::Kind kind) {
   Formula formula = Make(kind, datum);
-  formula.term = datum;
+  formula.term = Unquoted(datum);
   return formula;
 }
 
@@ -282,7 +282,7 @@ Effect ReadProtection(const Construct& in, const Datum& datum) {
   constexpr std::string_view kForm = "(:protection (predicate arguments...))";
   WantArguments(in, datum, 1, 1, kForm);
   Effect effect = MakeEffect(Effect::Kind::kProtection, datum);
-  effect.term = datum.items[1];
+  effect.term = Unquoted(datum.items[1]);
   if (effect.term.kind != Datum::Kind::kVariable) CheckAtom(in, effect.term, kForm);
   return effect;
 }
@@ -304,7 +304,7 @@ Effect ReadEffect(const Construct& in, const Datum& datum) {
   const bool is_variable = datum.kind == Datum::Kind::kVariable;
   if (!is_variable) CheckAtom(in, datum, kEffectWanted);
   Effect effect = MakeEffect(is_variable ? Effect::Kind::kList : Effect::Kind::kAtom, datum);
-  effect.term = datum;
+  effect.term = Unquoted(datum);
   return effect;
 }
 

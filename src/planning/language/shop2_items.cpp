@@ -32,12 +32,11 @@ Construct ConstructOf(const std::string& source, std::string_view kind, const Da
 }
 
 /// The head at `index`, checked.
-const Datum& HeadAt(const Construct& in, const Datum& item, std::size_t index,
-                    std::string_view wanted) {
+Datum HeadAt(const Construct& in, const Datum& item, std::size_t index, std::string_view wanted) {
   if (!item.tail.empty() || item.items.size() <= index) FailAbout(in, item, wanted);
   const Datum& head = item.items[index];
   CheckTerm(in, head, fmt::format("a head (name arguments...) as in {}", wanted));
-  return head;
+  return Unquoted(head);
 }
 
 // ----------------------------------------------------------------------------------------

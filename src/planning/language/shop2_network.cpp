@@ -32,7 +32,7 @@ Datum TaskTerm(const Construct& in, const Datum& datum, std::size_t first) {
   task.items.erase(task.items.begin(), task.items.begin() + static_cast<std::ptrdiff_t>(first));
   CheckTerm(in, task, kTaskWanted);
   ReplaceUnquotes(&task);
-  return task;
+  return Unquoted(std::move(task));
 }
 
 bool IsInop(const Datum& task) { return task.Head() == "!!inop" && task.items.size() == 1; }

@@ -45,10 +45,14 @@ Operator ReadOperator(const std::string& source, const Datum& item);
 Method ReadMethod(const std::string& source, const Datum& item);
 Axiom ReadAxiom(const std::string& source, const Datum& item);
 
+/// A head, atom or task without quotes, which mean nothing where nothing is evaluated: (p 'a) is
+/// (p a). A (call ...) keeps its own.
+Datum Unquoted(Datum term);
+
 /// Variables of a datum are appended, as often as they stand there.
 void CollectVariables(const Datum& datum, std::vector<std::string>* variables);
 
-/// Operators once each, adds bound, tasks handled.
+/// Operators once each, adds bound, deletes bound or warned of, tasks handled.
 void CheckDomain(Domain* domain);
 
 }  // namespace hires::planning::shop2

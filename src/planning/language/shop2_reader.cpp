@@ -90,12 +90,12 @@ const Datum& WithoutQuote(const Datum& datum) {
   return datum.Head() == "quote" && datum.items.size() == 2 ? datum.items[1] : datum;
 }
 
-/// The value of `:domain` in (name options...), "" if there is none.
-std::string DomainOption(const Datum& name) {
+/// The value of `:domain` in (name options...), nil if there is none.
+Datum DomainOption(const Datum& name) {
   for (std::size_t i = 1; i + 1 < name.items.size(); i += 2) {
-    if (name.items[i].IsSymbol(":domain")) return name.items[i + 1].text;
+    if (name.items[i].IsSymbol(":domain")) return name.items[i + 1];
   }
-  return "";
+  return {};
 }
 
 std::vector<Datum> ReadFacts(const Construct& in, const Datum& facts) {
@@ -104,11 +104,13 @@ std::vector<Datum> ReadFacts(const Construct& in, const Datum& facts) {
   if (!is_list || !facts.Head().empty()) {
     shop2::FailAbout(in, facts, "a list of facts, as in ((on a b) (clear a)), or nil");
   }
+  std::vector<Datum> atoms;
   for (const Datum& fact : facts.items) {
     shop2::CheckAtom(in, fact, kFactWanted);
     if (!fact.tail.empty() || !IsGround(fact)) shop2::FailAbout(in, fact, kFactWanted);
+    atoms.push_back(shop2::Unquoted(fact));
   }
-  return facts.items;
+  return atoms;
 }
 
 Problem ReadProblem(const Datum& form, const std::string& source) {
@@ -122,8 +124,9 @@ Problem ReadProblem(const Datum& form, const std::string& source) {
   problem.name = NameIn(unnamed, name).text;
   problem.source = source;
   const Construct in{source, fmt::format("problem '{}'", problem.name)};
-  problem.domain = DomainOption(name);
-  if (size == 5) problem.domain = NameIn(in, WithoutQuote(form.items[2])).text;
+  const Datum domain = size == 5 ? NameIn(in, WithoutQuote(form.items[2])) : DomainOption(name);
+  problem.domain = domain.text;
+  problem.domain_place = domain.place;
   problem.facts = ReadFacts(in, WithoutQuote(form.items[size - 2]));
   problem.tasks = shop2::ReadNetwork(in, shop2::WithOwnNames(WithoutQuote(form.items[size - 1])));
   return problem;

@@ -171,7 +171,6 @@ struct FlatNetwork {
 Datum PatternOf(const Datum& task, int* num_calls) {
   if (!task.IsList()) return task;
   if (task.Head() == "call") return MakeVariable(fmt::format("?%call{}", ++*num_calls));
-  if (task.Head() == "quote" && task.items.size() == 2) return PatternOf(task.items[1], num_calls);
   Datum pattern = task;
   for (Datum& item : pattern.items) item = PatternOf(item, num_calls);
   for (Datum& tail : pattern.tail) tail = PatternOf(tail, num_calls);

@@ -154,7 +154,6 @@ class Compiler {
     }
     if (!datum.IsList()) return Constant(terms_.FromDatum(datum));
     if (IsCall(datum)) return CompileCall(datum, scope);
-    if (datum.Head() == "quote" && datum.items.size() == 2) return Compile(datum.items[1], scope);
     const Pattern* list = datum.tail.empty() ? Constant(Term()) : Compile(datum.tail[0], scope);
     for (std::size_t i = datum.items.size(); i-- > 0;) {
       list = MakePair(Compile(datum.items[i], scope), list);

@@ -62,6 +62,14 @@ PlanResult FindPlans(const Program& program, TermTable* terms, const PlanRequest
   return Search(program, terms, request).Run();
 }
 
+std::vector<std::string> DoubtsAbout(const Domain& domain, const Problem& problem) {
+  std::vector<std::string> doubts = domain.warnings;
+  for (const auto& more : {problem.warnings, MisspeltPredicates(domain, problem)}) {
+    doubts.insert(doubts.end(), more.begin(), more.end());
+  }
+  return doubts;
+}
+
 std::vector<Datum> TasksOf(const std::vector<TraceEntry>& entries) {
   std::vector<Datum> tasks;
   for (const TraceEntry& entry : entries) {
@@ -76,8 +84,8 @@ PlanResult FindPlans(const Domain& domain, const Problem& problem, const PlanReq
                      const Functions& functions) {
   TermTable terms;
   const Program program(domain, problem, functions, &terms);
-  const std::vector<std::string> misspelt = MisspeltPredicates(domain, problem);
-  for (const auto* warnings : {&program.warnings(), &misspelt}) {
+  const std::vector<std::string> doubts = DoubtsAbout(domain, problem);
+  for (const auto* warnings : {&program.warnings(), &doubts}) {
     if (request.strict && !warnings->empty()) throw base::ConfigError(warnings->front());
   }
   PlanResult result = FindPlans(program, &terms, request);
@@ -86,7 +94,7 @@ PlanResult FindPlans(const Domain& domain, const Problem& problem, const PlanReq
     result.unknown_names = UnknownSymbols(TasksOf(result.deepest), domain, problem);
   }
   result.warnings = program.warnings();
-  result.misspelt = misspelt;
+  result.doubts = doubts;
   return result;
 }
 

@@ -39,8 +39,11 @@ void StateUpdate::Change(const StepEffects& effects, const CompiledOperator& app
   }
   const std::vector<Term>& adds = effects.adds();
   for (std::size_t i = adds.size(); i-- > 0;) {
-    RequireFact(applied, adds[i]);
-    if (!effects.IsProtection(adds[i])) path_.state().Add(adds[i]);
+    const bool is_protection = effects.IsProtection(adds[i]);
+    if (!effects.IsFact(is_protection ? effects.Protected(adds[i]) : adds[i])) {
+      FailOn(applied, adds[i]);
+    }
+    if (!is_protection) path_.state().Add(adds[i]);
   }
 }
 
@@ -73,16 +76,12 @@ bool StateUpdate::IsLost(Term atom) {
   return true;
 }
 
-void StateUpdate::RequireFact(const CompiledOperator& applied, Term atom) const {
-  const TermTable& terms = path_.terms();
-  if (atom.IsPair() && terms.IsGround(atom) && terms.head(atom).kind() == Term::Kind::kSymbol) {
-    return;
-  }
+void StateUpdate::FailOn(const CompiledOperator& applied, Term added) const {
   throw base::ConfigError(
       fmt::format("{}:{}: operator {} adds {}, which is no fact without variables; bind them in "
                   "its precondition",
                   program_.domain().source, applied.source->place.line, applied.source->head.Head(),
-                  terms.ToString(atom)));
+                  path_.terms().ToString(added)));
 }
 
 }  // namespace hires::planning

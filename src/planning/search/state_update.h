@@ -25,7 +25,7 @@ class StateUpdate {
   bool ProtectionsHold(const StepEffects& effects);
   bool Protect(const StepEffects& effects);
   bool IsLost(Term atom);
-  void RequireFact(const CompiledOperator& applied, Term atom) const;
+  [[noreturn]] void FailOn(const CompiledOperator& applied, Term added) const;
 
   const Program& program_;
   SearchPath& path_;

@@ -10,7 +10,7 @@
 namespace hires::planning {
 
 /// What one step takes away and adds, in the order of the file. A protection stands among the atoms
-/// as (:protection atom).
+/// as (:protection atom); what variables stood for may be none.
 class StepEffects {
  public:
   explicit StepEffects(SearchPath* path);
@@ -20,16 +20,17 @@ class StepEffects {
   const std::vector<Term>& deletes() const { return deletes_; }
   const std::vector<Term>& adds() const { return adds_; }
 
+  /// (:protection x)
   bool IsProtection(Term atom) const;
   /// @pre IsProtection(protection).
   Term Protected(Term protection) const;
+  /// (predicate arguments...) without variables.
+  bool IsFact(Term atom) const;
 
  private:
-  void Collect(const std::vector<CompiledEffect>& effects, std::uint32_t variables,
-               std::vector<Term>* atoms);
-  void CollectForAll(const CompiledEffect& effect, std::uint32_t variables,
-                     std::vector<Term>* atoms);
-  void CollectList(Term list, std::vector<Term>* atoms) const;
+  class Values;
+
+  bool IsAtom(Term value) const;
 
   SearchPath& path_;
   const Term protection_word_;

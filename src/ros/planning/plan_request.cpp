@@ -178,7 +178,7 @@ hires::PlanResult Plan(const PlanRequest& request, const planning::Domain& domai
   const double begin = hires::base::ThreadCpuSeconds();
   planning::PlanResult found = planning::FindPlans(domain, request.problem, request.search);
   const double cpu_seconds = hires::base::ThreadCpuSeconds() - begin;
-  for (const std::string& warning : found.misspelt) {
+  for (const std::string& warning : found.doubts) {
     hires::base::Log(hires::base::LogLevel::kWarn, warning);
   }
   hires::PlanResult result = WithoutPlans(found, request.search.which);

@@ -33,6 +33,7 @@ inline void showValue(const RandomNetwork& network, std::ostream& out) {
 struct NetworkOptions {
   bool protections{false};  ///< operators protect what they add, others give it free
   bool immediate{true};     ///< some tasks are marked so
+  bool variables{false};    ///< operators delete and add what variables stand for, also by forall
   bool recursion{false};    ///< tasks may lead to themselves; the search may have no end
   int num_tasks{3};         ///< compound tasks; without recursion each leads to later ones only
   int max_items{3};         ///< of a task network
@@ -49,6 +50,7 @@ class NetworkWriter {
     // These bind a variable that their task leaves open.
     domain += "  (:operator (!bind ?x) ((p ?x)) () ())\n";
     domain += "  (:method (choose ?x) ((q ?x)) ())\n";
+    if (options_.variables) domain += OperatorsOfVariables();
     for (int i = 0; i < options_.num_tasks; ++i) {
       const int num_methods = 1 + Pick(2);
       for (int k = 0; k < num_methods; ++k) domain += Method(i);
@@ -121,6 +123,42 @@ class NetworkWriter {
            std::to_string(Pick(4)) + ")\n";
   }
 
+  /// They take an atom or a list as their argument, gather it or read it in the state.
+  std::string OperatorsOfVariables() const {
+    const Names two{"a", "b"};
+    Names known = two;
+    const std::string each = "(forall (?v) ((" + Predicate() + " ?v)) (";
+    const std::string also = Of({"", " ?f"});
+    std::string text = "  (:operator (!note ?f) " + Goals(&known);
+    text +=
+        " (" + Effects(known) + ") (?f " + Effects(known) + ") " + std::to_string(Pick(4)) + ")\n";
+    text += "  (:operator (!forget ?f) () (" + Effects(two) + " ?f) (" + Effects(two);
+    text += ") (call length ?f))\n  (:operator (!all ?f) () () ?f)\n";
+    text += "  (:operator (!each ?f) () (" + each + Atom({"?v", "a"}) + also + "))) (";
+    text += each + Atom({"?v", "b"}) + also + "))))\n";
+    text += "  (:operator (!pair ?f) () (" + each + "(forall (?w) ((" + Predicate() + " ?w)) (";
+    text += Atom({"?v", "?w"}) + "))))) (" + also + "))\n";
+    text += "  (:operator (!gather ?f) ((setof " + Atom({"?v"}) + " (" + Atom({"?v"});
+    text += ") ?g) (assign ?h '" + Value(two) + ")) (" + Of({"?h", "?g"}) + ") (";
+    text += Of({"?g", "?h"}) + " ?f))\n";
+    text +=
+        "  (:operator (!maybe ?f) ((imply " + Atom(two) + " " + Atom({"?y"}) + ") (exists (?z) (";
+    text += Atom({"?z"}) + ") (" + Atom({"?w"}) + "))) (" + Atom({"?y"}) + " " + Atom({"?w"});
+    return text + ") (?f))\n";
+  }
+
+  /// An atom, a list of some, or protections among them.
+  std::string Value(const Names& known) const {
+    if (Chance(40)) return Atom(known);
+    std::string text;
+    const int count = Pick(3);
+    for (int i = 0; i < count; ++i) text += (i == 0 ? "" : " ") + Atom(known);
+    if (!options_.protections || Chance(60)) return "(" + text + ")";
+    const std::string atom = Atom(known);
+    if (Chance(30)) return "(:protection " + atom + ")";
+    return "(" + text + " " + atom + " (:protection " + atom + "))";
+  }
+
   static std::string Effects(const Names& known) {
     std::string text;
     const int count = Pick(3);
@@ -162,6 +200,11 @@ class NetworkWriter {
     const int first = options_.recursion ? 0 : index + 1;
     const bool is_compound =
         first < options_.num_tasks && Chance(options_.recursion || index < 0 ? 70 : 40);
+    if (!is_compound && options_.variables && Chance(50)) {
+      const std::string value = Chance(20) ? "'" + Value(known) : Value(known);
+      return "(" + Of({"!note", "!forget", "!all", "!each", "!pair", "!gather", "!maybe"}) + " " +
+             value + ")";
+    }
     const std::string name = is_compound
                                  ? "t" + std::to_string(first + Pick(options_.num_tasks - first))
                                  : "!o" + std::to_string(Pick(kNumOperators));

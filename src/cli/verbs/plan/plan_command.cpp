@@ -192,7 +192,7 @@ void PrintWarnings(const Session& session) {
   for (const std::string& warning : session.result.warnings) {
     std::cerr << "warning, as nothing reached it: " << warning << '\n';
   }
-  for (const std::string& warning : session.result.misspelt) {
+  for (const std::string& warning : session.result.doubts) {
     std::cerr << "warning: " << warning << '\n';
   }
 }
@@ -226,6 +226,7 @@ nlohmann::ordered_json SessionToJson(const Session& session) {
   }
   json["why"] = planning::OutcomeSentence(session.result, session.request.which);
   json["warnings"] = session.result.warnings;
+  for (const std::string& doubt : session.result.doubts) json["warnings"].push_back(doubt);
   return json;
 }
 
@@ -268,8 +269,7 @@ void AddPlanVerb(CLI::App* app, PlanOptions* options) {
       ->check(NumberBetween(1, 1000000000));
   verb->add_flag("--trace", options->trace, "say why ways were given up, the latest 1000");
   verb->add_flag("--strict", options->strict,
-                 "refuse a domain that names unknown tasks or functions, even where no way leads "
-                 "to them");
+                 "refuse what would be warned of, such as unknown tasks that no way leads to");
   AddReportOptions(verb, &options->report);
   verb->add_option("--format", options->format,
                    "print the bare plan: shop2 (one operator a line) or ipc (as in IPC 2020)")
