@@ -63,7 +63,7 @@ TEST(BrokenTest, FallsBouncesPushesAndFastRidesAreNot) {
                                                rng.Normal(0, 1)).normalized();
       state.V_WB.linear = {rng.Normal(0, 2), rng.Normal(0, 2), rng.Normal(0, 2)};
       state.V_WB.angular = {rng.Normal(0, 5), rng.Normal(0, 5), rng.Normal(0, 5)};
-      AddCube(&world, state, rng.Uniform(0.0, 0.8));
+      AddCube(&world, state, rng.Uniform(0.0, 0.3));
     }
     for (int step = 0; step < 800; ++step) world.Step();
     EXPECT_FALSE(world.broken()) << "case " << i;

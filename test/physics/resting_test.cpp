@@ -24,7 +24,7 @@ constexpr int kSteps = 200;
 constexpr double kMoved = 1e-3;  // [m]
 
 enum class Thing { kCube, kBook, kCan, kMeshBox };
-enum class Carrier { kBoxPlate, kDisc, kMeshPlate, kStaticBox, kStack };
+enum class Carrier { kBoxPlate, kDisc, kMeshPlate, kStaticBox };
 
 struct Case {
   Thing thing;
@@ -33,7 +33,7 @@ struct Case {
 
 std::string NameOf(const Case& at) {
   constexpr const char* kThings[] = {"Cube", "Book", "Can", "MeshBox"};
-  constexpr const char* kCarriers[] = {"BoxPlate", "Disc", "MeshPlate", "StaticBox", "Stack"};
+  constexpr const char* kCarriers[] = {"BoxPlate", "Disc", "MeshPlate", "StaticBox"};
   return std::string(kThings[static_cast<int>(at.thing)]) + "On" + kCarriers[static_cast<int>(at.carrier)];
 }
 
@@ -95,14 +95,6 @@ void AddCarrier(Carrier carrier, base::Rng* rng, Scene* scene) {
     return;
   }
   scene->world.AddDriven({plate}, scene->X_WC);
-  if (carrier != Carrier::kStack) return;
-  const geometry::Box lower{{0.22, 0.2, rng->Uniform(0.02, 0.1)}};
-  BodyState state;
-  state.X_WB = Rotated(DrawYaw(rng), scene->X_WC.translation);
-  state.X_WB.translation.z() = scene->top + lower.size.z() / 2;
-  scene->world.AddLoose({2.0, Vector3d::Zero(), geometry::SolidInertia(lower, 2.0)},
-                        {test_support::MakeCollision(lower, Vector3d::Zero(), friction)}, state);
-  scene->top += lower.size.z();
 }
 
 class RestingTest : public testing::TestWithParam<Case> {};
@@ -136,8 +128,7 @@ TEST_P(RestingTest, StaysWhereItIs) {
 std::vector<Case> AllCases() {
   std::vector<Case> cases;
   for (const Thing thing : {Thing::kCube, Thing::kBook, Thing::kCan, Thing::kMeshBox}) {
-    for (const Carrier carrier : {Carrier::kBoxPlate, Carrier::kDisc, Carrier::kMeshPlate, Carrier::kStaticBox,
-                                  Carrier::kStack}) {
+    for (const Carrier carrier : {Carrier::kBoxPlate, Carrier::kDisc, Carrier::kMeshPlate, Carrier::kStaticBox}) {
       cases.push_back({thing, carrier});
     }
   }
