@@ -17,8 +17,8 @@ namespace {
 
 using sensing::ObjectEstimator;
 using sensing::RobotStateEstimator;
-using test_support::At;
-using test_support::EmptyRoom;
+using hires::test_support::At;
+using hires::test_support::EmptyRoom;
 using testing::Each;
 using testing::ElementsAre;
 using testing::IsEmpty;
@@ -73,8 +73,8 @@ class WorldTrackerTest : public testing::Test {
     tracker_.Process();
   }
 
-  std::shared_ptr<test_support::FakeFrameTree> tree_ =
-      std::make_shared<test_support::FakeFrameTree>();
+  std::shared_ptr<hires::test_support::FakeFrameTree> tree_ =
+      std::make_shared<hires::test_support::FakeFrameTree>();
   RobotStateEstimator state_{Pr2(), {"map", "odom_combined", "base_footprint"}, {}, {}, tree_};
   ObjectEstimator objects_{EmptyRoom(), Pr2(), {}, &state_};
   robot::JointPositions joints_;
