@@ -53,7 +53,7 @@ class WorldTrackerTest : public testing::Test {
   std::unique_ptr<sensing::FloorWatch> FloorFor(bool sees_floor) const {
     if (!sees_floor) return nullptr;
     return std::make_unique<sensing::FloorWatch>(
-        &state_, std::make_shared<world::World>(test_support::Room()), Pr2(),
+        &state_, std::make_shared<world::World>(hires::test_support::Room()), Pr2(),
         sensing::FloorWatchParams{}, sensing::GroundWatchParams{});
   }
   void Tell(double time, bool with_joints = true) {
