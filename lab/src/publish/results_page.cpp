@@ -28,18 +28,14 @@ std::string OfVersion(const std::string& text, const PublishedResults& results) 
   return With(With(text, "{version}", results.version), "{date}", DateOf(results));
 }
 
-/// The numbers that a text names, each once, in the order of its words.
+/// The numbers that a text names, each once, in the order of the results: what begins with "..."
+/// stands behind what it goes on from.
 std::vector<PublishedNumber> NumbersIn(const std::string& text, const PublishedResults& results) {
+  std::set<std::string> named;
+  for (const Placeholder& each : PlaceholdersOf(text)) named.insert(each.number);
   std::vector<PublishedNumber> numbers;
-  std::set<std::string> seen;
-  for (const Placeholder& each : PlaceholdersOf(text)) {
-    const auto number =
-        std::find_if(results.numbers.begin(), results.numbers.end(),
-                     [&](const PublishedNumber& other) { return other.name == each.number; });
-    if (number != results.numbers.end() && seen.insert(each.number).second) {
-      numbers.push_back(*number);
-    }
-  }
+  std::copy_if(results.numbers.begin(), results.numbers.end(), std::back_inserter(numbers),
+               [&](const PublishedNumber& number) { return named.count(number.name) > 0; });
   return numbers;
 }
 
@@ -71,11 +67,15 @@ std::string DaysOf(const std::vector<PublishedNumber>& numbers, const std::strin
   return days.empty() ? "" : " (" + base::Join(days, ", ") + ")";
 }
 
+/// Filled, and of which days it is.
+std::string CellText(const std::string& text, const PublishedResults& results) {
+  return Filled(text, results.numbers) + DaysOf(NumbersIn(text, results), results.version);
+}
+
 std::string RowText(const PageRow& row, const PublishedResults& results) {
-  const std::vector<PublishedNumber> numbers = NumbersIn(ShownText(row), results);
-  return fmt::format("| {} | {}{} | {} | {} |\n", Filled(row.what, results.numbers),
-                     Filled(row.ours, results.numbers), DaysOf(numbers, results.version),
-                     Filled(row.against, results.numbers), TruthsOf(numbers));
+  return fmt::format("| {} | {} | {} | {} |\n", Filled(row.what, results.numbers),
+                     CellText(row.ours, results), CellText(row.against, results),
+                     TruthsOf(NumbersIn(ShownText(row), results)));
 }
 
 std::string WithUnit(const PublishedNumber& number) {
