@@ -338,9 +338,10 @@ TEST(CommandLineTest, FilesOfOnesOwnAreSaid) {
   EXPECT_THAT(seen.setup.extra_objects, ElementsAre(file)) << "loaded once";
   ASSERT_EQ(seen.start.put.size(), 1u);
   EXPECT_EQ(seen.start.put[0].object, "vase");
-  const std::vector<base::Atom> atoms = seen.start.AllAtoms();
-  EXPECT_THAT(atoms, testing::Contains(base::Atom{"On", {"vase", "bench"}}));
-  EXPECT_THAT(atoms, testing::Contains(base::Atom{"Holding", {"rightArm1", "vase"}}));
+  std::vector<std::string> atoms;
+  for (const base::Atom& atom : seen.start.AllAtoms()) atoms.push_back(ToString(atom));
+  EXPECT_THAT(atoms, testing::Contains(ToString(base::Atom{"On", {"vase", "bench"}})));
+  EXPECT_THAT(atoms, testing::Contains(ToString(base::Atom{"Holding", {"rightArm1", "vase"}})));
 }
 
 TEST(CommandLineTest, MoreVerbsGetTheirOwnArguments) {
