@@ -18,8 +18,9 @@ using ::testing::Not;
 TEST(LabCommandLineTest, HelpNamesTheVerbs) {
   const auto ended = RunLab({"--help"});
   EXPECT_EQ(ended.code, 0);
-  EXPECT_THAT(ended.out, AllOf(HasSubstr("experiment"), HasSubstr("scenarios"),
-                               HasSubstr("experiences"), HasSubstr("reproduce"), HasSubstr("publish")));
+  EXPECT_THAT(ended.out,
+              AllOf(HasSubstr("experiment"), HasSubstr("scenarios"), HasSubstr("experiences"),
+                    HasSubstr("reproduce"), HasSubstr("publish")));
 }
 
 TEST(LabCommandLineTest, VerbsThatProgramsCallAreNotShown) {

@@ -72,8 +72,8 @@ struct Lines {
 /// All parts of one task, wired.
 class TaskPlay {
  public:
-  TaskPlay(const LoopSetup::Parts& parts, const LoopOrder& order, const sim_robot::Scenario& scenario,
-       const LoopObserver& observer)
+  TaskPlay(const LoopSetup::Parts& parts, const LoopOrder& order,
+           const sim_robot::Scenario& scenario, const LoopObserver& observer)
       : observer_(observer),
         order_(Completed(order, scenario, parts)),
         truth_(WithSensing(parts.ReadTruth(order.truth), order.sensing)),

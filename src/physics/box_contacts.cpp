@@ -11,8 +11,8 @@ namespace {
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
-/// A face of A takes the place of B's only if its way out is shorter by this much [m]: rounding does
-/// not choose.
+/// A face of A takes the place of B's only if its way out is shorter by this much [m]: rounding
+/// does not choose.
 constexpr double kSameFace = 1e-6;
 /// Edges whose directions differ by a sine below this are parallel: between such, faces decide.
 constexpr double kParallel = 1e-5;
@@ -53,8 +53,7 @@ EdgeChoice LeastEdges(const PlacedBox& a, const PlacedBox& b, const Vector3d& p_
       way /= length;
       const double along = p_BA.dot(way);
       const double overlap = b.half_size.dot(way.cwiseAbs()) +
-                             a.half_size.dot((R_BA.transpose() * way).cwiseAbs()) -
-                             std::abs(along);
+                             a.half_size.dot((R_BA.transpose() * way).cwiseAbs()) - std::abs(along);
       if (overlap >= least.overlap) continue;
       least = {overlap, j, i, along < 0.0 ? Vector3d(-way) : way};
     }

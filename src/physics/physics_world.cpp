@@ -229,18 +229,21 @@ void PhysicsWorld::Impl::PutRawBack() {
   }
 }
 
-/// Seen from a surface of constant velocity u, no contact with it gives energy; so it gives a body at most
-/// u |v' - v| for each of its kilograms, and of all that touch at once none more than the fastest.
+/// Seen from a surface of constant velocity u, no contact with it gives energy; so it gives a body
+/// at most u |v' - v| for each of its kilograms, and of all that touch at once none more than the
+/// fastest.
 void PhysicsWorld::Impl::NoteBroken() {
   if (broken >= 0) return;
   for (std::size_t i = 0; i < loose.size(); ++i) {
     const LooseBody& body = loose[i];
     if (body.held) continue;
-    const Vector3d v = ToEigen(dBodyGetLinearVel(body.ode)), w = ToEigen(dBodyGetAngularVel(body.ode));
+    const Vector3d v = ToEigen(dBodyGetLinearVel(body.ode)),
+                   w = ToEigen(dBodyGetAngularVel(body.ode));
     const double after =
         0.5 * v.squaredNorm() + TurningEnergy(body.ode, dBodyGetQuaternion(body.ode), w);
     if (after <= kUnexplained) continue;
-    const double before = 0.5 * body.v.squaredNorm() + TurningEnergy(body.ode, raw[i].rotation, body.w);
+    const double before =
+        0.5 * body.v.squaredNorm() + TurningEnergy(body.ode, raw[i].rotation, body.w);
     const double given = std::sqrt(fastest_surface2) * (v - body.v).norm();
     if (after - before - given > kUnexplained) broken = body.id;
   }

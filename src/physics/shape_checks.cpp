@@ -16,11 +16,11 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double kMass = 0.3;                                         // [kg]
+constexpr double kMass = 0.3;                                                 // [kg]
 constexpr std::array<double, 6> kPlates{0.005, 0.01, 0.02, 0.03, 0.06, 0.1};  // [m] thick
-constexpr int kTurns = 8;  // every other one parallel to the plate's edges but for rounding
-constexpr double kResting = 1.0;                                      // [s]
-constexpr double kMayMove = 0.001;                                    // [m]
+constexpr int kTurns = 8;         // every other one parallel to the plate's edges but for rounding
+constexpr double kResting = 1.0;  // [s]
+constexpr double kMayMove = 0.001;  // [m]
 constexpr int kTipHalvings = 12;
 
 struct Thing {
@@ -100,14 +100,20 @@ PhysicsCheck CheckRest(const Thing& thing) {
       }
     }
   }
-  PhysicsCheck check{fmt::format("{} at rest on plates of {} to {} m, {} headings: moves", thing.name,
-                                 kPlates.front(), kPlates.back(), kTurns),
-                     "m", 0.0, farthest, farthest, kMayMove, ""};
+  PhysicsCheck check{fmt::format("{} at rest on plates of {} to {} m, {} headings: moves",
+                                 thing.name, kPlates.front(), kPlates.back(), kTurns),
+                     "m",
+                     0.0,
+                     farthest,
+                     farthest,
+                     kMayMove,
+                     ""};
   if (!std::isfinite(check.error)) check.error = HUGE_VAL;
   return check;
 }
 
-/// Where pushing harder and harder begins to tip it. @param direction  of the push, against the thing
+/// Where pushing harder and harder begins to tip it. @param direction  of the push, against the
+/// thing
 bool Tips(const Thing& thing, double thickness, double direction, double acceleration) {
   Plate plate(thing, thickness, 0.0, 3.0);
   const double heading = 0.7 + direction;
@@ -135,9 +141,14 @@ PhysicsCheck CheckTipping(const geometry::Box& box) {
       if (std::abs(upper / expected - 1.0) > std::abs(worst - 1.0)) worst = upper / expected;
     }
   }
-  return {fmt::format("onset of tipping of a box over each edge, plates of {} to {} m", kPlates.front(),
-                      kPlates.back()),
-          "of g w / h", 1.0, worst, std::abs(worst - 1.0), 0.01, ""};
+  return {fmt::format("onset of tipping of a box over each edge, plates of {} to {} m",
+                      kPlates.front(), kPlates.back()),
+          "of g w / h",
+          1.0,
+          worst,
+          std::abs(worst - 1.0),
+          0.01,
+          ""};
 }
 
 }  // namespace

@@ -114,7 +114,8 @@ void WriteFile(const fs::path& path, const std::string& text) {
 /// The usual unknown is a grey of 205, which thresholds of another map may take for free.
 void WarnOfGreyThatIsFree(const GreyImage& image, const MapParams& params,
                           const std::string& yaml_path) {
-  constexpr double kGrey = 0.05;  // share of black; what is lighter may be a scanner's or painter's white
+  constexpr double kGrey =
+      0.05;  // share of black; what is lighter may be a scanner's or painter's white
   std::map<std::uint8_t, long> greys;
   long num_cells = 0;
   for (const std::uint8_t grey : image.pixels) {
@@ -124,19 +125,22 @@ void WarnOfGreyThatIsFree(const GreyImage& image, const MapParams& params,
     ++num_cells;
   }
   if (num_cells == 0) return;
-  const auto most = std::max_element(greys.begin(), greys.end(), [](const auto& a, const auto& b) {
-    return a.second < b.second;
-  });
+  const auto most = std::max_element(
+      greys.begin(), greys.end(), [](const auto& a, const auto& b) { return a.second < b.second; });
   const double black = BlackOf(most->first, params);
   double lightest = 1.0;
   for (const auto& [grey, count] : greys) lightest = std::min(lightest, BlackOf(grey, params));
-  const double unknown_from = std::floor(lightest * 1000.0) / 1000.0;  // rounded so that it has all unknown
-  base::Log(base::LogLevel::kWarn,
-            fmt::format("{}: {} of {} cells are grey in {} (most of them {}) and count as free, as their share of "
-                        "black, {:.3f}, lies below free_thresh {}; grey is usually unknown: free_thresh: {:.3f} "
-                        "has them so",
-                        yaml_path, num_cells, image.pixels.size(), params.image, int{most->first}, black,
-                        params.free_thresh, unknown_from));
+  const double unknown_from =
+      std::floor(lightest * 1000.0) / 1000.0;  // rounded so that it has all unknown
+  base::Log(
+      base::LogLevel::kWarn,
+      fmt::format(
+          "{}: {} of {} cells are grey in {} (most of them {}) and count as free, as their share "
+          "of "
+          "black, {:.3f}, lies below free_thresh {}; grey is usually unknown: free_thresh: {:.3f} "
+          "has them so",
+          yaml_path, num_cells, image.pixels.size(), params.image, int{most->first}, black,
+          params.free_thresh, unknown_from));
 }
 
 }  // namespace

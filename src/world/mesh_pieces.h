@@ -14,8 +14,9 @@ std::vector<geometry::TriangleMesh> ConnectedParts(const geometry::TriangleMesh&
 /// [m]. Parts too large to be tested cheaply count as not convex.
 bool IsConvex(const geometry::TriangleMesh& mesh, double slack = 1e-6);
 
-/// Whether a part is closed (every edge belongs to two triangles, which run along it in opposite directions)
-/// and convex: then what it encloses is matter. Sheets and walls that go round a room are not.
+/// Whether a part is closed (every edge belongs to two triangles, which run along it in opposite
+/// directions) and convex: then what it encloses is matter. Sheets and walls that go round a room
+/// are not.
 bool IsSolid(const geometry::TriangleMesh& mesh);
 
 /// Outlines of a mesh within z_min..z_max that keep its hollows open: a solid part gives its

@@ -333,8 +333,10 @@ TEST(CommandLineTest, FilesOfOnesOwnAreSaid) {
   EXPECT_TRUE(seen.own_scene);
   EXPECT_THAT(seen.setup.extra_objects, ElementsAre(file));
   EXPECT_THAT(seen.start.on_tray, ElementsAre("vase"));
-  RunHires(start, {"--put", file + ":1,1,0", "--put", file + ":bench", "--object-in-hand", file + ":rightArm1"},
-           backends);
+  RunHires(
+      start,
+      {"--put", file + ":1,1,0", "--put", file + ":bench", "--object-in-hand", file + ":rightArm1"},
+      backends);
   EXPECT_THAT(seen.setup.extra_objects, ElementsAre(file)) << "loaded once";
   ASSERT_EQ(seen.start.put.size(), 1u);
   EXPECT_EQ(seen.start.put[0].object, "vase");

@@ -15,10 +15,10 @@
 namespace hires::control::world_tracker_test {
 namespace {
 
-using sensing::ObjectEstimator;
-using sensing::RobotStateEstimator;
 using hires::test_support::At;
 using hires::test_support::EmptyRoom;
+using sensing::ObjectEstimator;
+using sensing::RobotStateEstimator;
 using testing::Each;
 using testing::ElementsAre;
 using testing::IsEmpty;

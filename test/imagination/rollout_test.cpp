@@ -81,8 +81,7 @@ TEST(RolloutTest, AFallIsOneEventHoweverManySamples) {
   EXPECT_GT(result.counts.topple, 1);
   EXPECT_GT(result.max_tilt, 0.5);
   EXPECT_EQ(result.first_cause, "accelerating");
-  EXPECT_TRUE(result.failure.code == Code::kObjectFell ||
-              result.failure.code == Code::kObjectSlid)
+  EXPECT_TRUE(result.failure.code == Code::kObjectFell || result.failure.code == Code::kObjectSlid)
       << ToString(result.failure);
 }
 

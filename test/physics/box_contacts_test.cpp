@@ -88,11 +88,13 @@ TEST(BoxContactsTest, ATiltedBoxStandsOnItsEdgeOrCorner) {
     return box;
   };
   ContactList edge, corner;
-  ASSERT_TRUE(AddBoxOnBox(tilted(AngleAxisd(0.3, Vector3d::UnitX()).toRotationMatrix()), kPlate, &edge));
+  ASSERT_TRUE(
+      AddBoxOnBox(tilted(AngleAxisd(0.3, Vector3d::UnitX()).toRotationMatrix()), kPlate, &edge));
   EXPECT_EQ(edge.size(), 2);
-  ASSERT_TRUE(AddBoxOnBox(
-      tilted((AngleAxisd(0.3, Vector3d::UnitX()) * AngleAxisd(0.2, Vector3d::UnitY())).toRotationMatrix()),
-      kPlate, &corner));
+  ASSERT_TRUE(
+      AddBoxOnBox(tilted((AngleAxisd(0.3, Vector3d::UnitX()) * AngleAxisd(0.2, Vector3d::UnitY()))
+                             .toRotationMatrix()),
+                  kPlate, &corner));
   ASSERT_EQ(corner.size(), 1);
   EXPECT_NEAR(corner[0].depth, 0.0002, 1e-12);
 }
@@ -103,7 +105,8 @@ TEST(BoxContactsTest, CrossedEdgesTouchInOnePoint) {
   const Matrix3d across = AngleAxisd(geometry::kPi / 2, Vector3d::UnitZ()).toRotationMatrix();
   const Vector3d half(0.2, 0.02, 0.02);
   const double apart = 2.0 * 0.02 * std::sqrt(2.0) - 0.0003;
-  const PlacedBox lower{{0.0, 0.0, 0.0}, on_edge, half}, upper{{0.05, 0.03, apart}, across * on_edge, half};
+  const PlacedBox lower{{0.0, 0.0, 0.0}, on_edge, half},
+      upper{{0.05, 0.03, apart}, across * on_edge, half};
   ContactList contacts;
   ASSERT_TRUE(AddBoxOnBox(upper, lower, &contacts));
   ASSERT_EQ(contacts.size(), 1);
@@ -117,10 +120,12 @@ TEST(BoxContactsTest, TouchingIsMutualAndEndsWhereBoxesAreMovedApart) {
   int num_touching = 0;
   for (int i = 0; i < 5000; ++i) {
     const auto draw = [&] {
-      const Eigen::Quaterniond q(rng.Normal(0, 1), rng.Normal(0, 1), rng.Normal(0, 1), rng.Normal(0, 1));
-      return PlacedBox{{rng.Uniform(-0.15, 0.15), rng.Uniform(-0.15, 0.15), rng.Uniform(-0.15, 0.15)},
-                       q.normalized().toRotationMatrix(),
-                       {rng.Uniform(0.01, 0.15), rng.Uniform(0.01, 0.15), rng.Uniform(0.01, 0.15)}};
+      const Eigen::Quaterniond q(rng.Normal(0, 1), rng.Normal(0, 1), rng.Normal(0, 1),
+                                 rng.Normal(0, 1));
+      return PlacedBox{
+          {rng.Uniform(-0.15, 0.15), rng.Uniform(-0.15, 0.15), rng.Uniform(-0.15, 0.15)},
+          q.normalized().toRotationMatrix(),
+          {rng.Uniform(0.01, 0.15), rng.Uniform(0.01, 0.15), rng.Uniform(0.01, 0.15)}};
     };
     PlacedBox a = draw();
     const PlacedBox b = draw();
@@ -129,7 +134,9 @@ TEST(BoxContactsTest, TouchingIsMutualAndEndsWhereBoxesAreMovedApart) {
     ASSERT_EQ(touch, AddBoxOnBox(b, a, &ba)) << i;
     if (!touch) continue;
     ++num_touching;
-    const auto deeper = [](const ContactPoint& p, const ContactPoint& q) { return p.depth < q.depth; };
+    const auto deeper = [](const ContactPoint& p, const ContactPoint& q) {
+      return p.depth < q.depth;
+    };
     const ContactPoint deepest = *std::max_element(ab.begin(), ab.end(), deeper);
     EXPECT_GT((a.centre - b.centre).dot(deepest.normal), 0.0) << "out of B into A, case " << i;
     int num_moves = 0;  // what is deepest within a face may lie less deep than what is beside it

@@ -52,15 +52,17 @@ TEST(BrokenTest, FallsBouncesPushesAndFastRidesAreNot) {
     base::Rng rng = seed.Fork(i);
     PhysicsWorld world{PhysicsParams()};
     world.AddFloor(rng.Uniform(0.2, 1.0));
-    const BodyId wall = world.AddDriven({MakeCollision(geometry::Box{{0.2, 2.0, 0.5}}, {0.0, 0.0, 0.25})},
-                                        geometry::Lift({-1.0, 0.0, 0.0}));
+    const BodyId wall =
+        world.AddDriven({MakeCollision(geometry::Box{{0.2, 2.0, 0.5}}, {0.0, 0.0, 0.25})},
+                        geometry::Lift({-1.0, 0.0, 0.0}));
     BodyState pushing = world.GetState(wall);
     pushing.V_WB.linear.x() = rng.Uniform(0.0, 5.0);
     world.SetMotion(wall, pushing);
     for (int k = 0; k < 4; ++k) {
       BodyState state = At(rng.Uniform(-0.5, 0.5), 0.2 * k, rng.Uniform(0.1, 2.0));
-      state.X_WB.rotation = Eigen::Quaterniond(rng.Normal(0, 1), rng.Normal(0, 1), rng.Normal(0, 1),
-                                               rng.Normal(0, 1)).normalized();
+      state.X_WB.rotation =
+          Eigen::Quaterniond(rng.Normal(0, 1), rng.Normal(0, 1), rng.Normal(0, 1), rng.Normal(0, 1))
+              .normalized();
       state.V_WB.linear = {rng.Normal(0, 2), rng.Normal(0, 2), rng.Normal(0, 2)};
       state.V_WB.angular = {rng.Normal(0, 5), rng.Normal(0, 5), rng.Normal(0, 5)};
       AddCube(&world, state, rng.Uniform(0.0, 0.3));

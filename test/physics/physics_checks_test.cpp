@@ -38,7 +38,8 @@ TEST(PhysicsChecksTest, MillOfTheRepositoryObeysTheory) {
 TEST(PhysicsChecksTest, EveryShapeRestsOnEveryPlateAndABoxTipsAsTheorySays) {
   PhysicsWorld::TakeSolverMessages();
   for (const PhysicsCheck& check : RunShapeChecks()) {
-    EXPECT_TRUE(check.passed()) << check.name << ": measured " << check.measured << " " << check.unit;
+    EXPECT_TRUE(check.passed()) << check.name << ": measured " << check.measured << " "
+                                << check.unit;
   }
   EXPECT_TRUE(PhysicsWorld::TakeSolverMessages().empty());
 }

@@ -1,4 +1,5 @@
-// What stands on something that does not move stays where it is, whatever both are and however they are turned.
+// What stands on something that does not move stays where it is, whatever both are and however they
+// are turned.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -34,7 +35,8 @@ struct Case {
 std::string NameOf(const Case& at) {
   constexpr const char* kThings[] = {"Cube", "Book", "Can", "MeshBox"};
   constexpr const char* kCarriers[] = {"BoxPlate", "Disc", "MeshPlate", "StaticBox"};
-  return std::string(kThings[static_cast<int>(at.thing)]) + "On" + kCarriers[static_cast<int>(at.carrier)];
+  return std::string(kThings[static_cast<int>(at.thing)]) + "On" +
+         kCarriers[static_cast<int>(at.carrier)];
 }
 
 /// A shape with its height.
@@ -70,7 +72,8 @@ Pose3 Rotated(double yaw, const Vector3d& at) {
 /// Half of all yaws are whole quarter turns, in which edges are parallel but for rounding.
 double DrawYaw(base::Rng* rng) {
   const double any = rng->Uniform(-geometry::kPi, geometry::kPi);
-  return rng->Uniform(0.0, 1.0) < 0.5 ? any : geometry::kPi / 2 * std::round(any / (geometry::kPi / 2));
+  return rng->Uniform(0.0, 1.0) < 0.5 ? any
+                                      : geometry::kPi / 2 * std::round(any / (geometry::kPi / 2));
 }
 
 /// A world with something that carries, up to z = `top` at its middle.
@@ -83,7 +86,8 @@ struct Scene {
 void AddCarrier(Carrier carrier, base::Rng* rng, Scene* scene) {
   const double thickness = rng->Uniform(0.005, 0.1), friction = rng->Uniform(0.2, 1.0);
   const double yaw = DrawYaw(rng);
-  scene->X_WC = Rotated(yaw, {rng->Uniform(-9.0, 9.0), rng->Uniform(-9.0, 9.0), rng->Uniform(0.0, 1.0)});
+  scene->X_WC =
+      Rotated(yaw, {rng->Uniform(-9.0, 9.0), rng->Uniform(-9.0, 9.0), rng->Uniform(0.0, 1.0)});
   scene->top = scene->X_WC.translation.z() + thickness / 2;
   const Vector3d size(0.5, 0.4, thickness);
   geometry::Shape shape = geometry::Box{size};
@@ -117,7 +121,8 @@ TEST_P(RestingTest, StaysWhereItIs) {
     double moved = 0.0;
     for (int step = 0; step < kSteps; ++step) {
       scene.world.Step();
-      moved = std::max(moved, (scene.world.GetState(body).X_WB.translation - state.X_WB.translation).norm());
+      moved = std::max(
+          moved, (scene.world.GetState(body).X_WB.translation - state.X_WB.translation).norm());
     }
     farthest = std::max(farthest, moved);
     if (moved > kMoved || scene.world.broken()) ++num_moved;
@@ -128,7 +133,8 @@ TEST_P(RestingTest, StaysWhereItIs) {
 std::vector<Case> AllCases() {
   std::vector<Case> cases;
   for (const Thing thing : {Thing::kCube, Thing::kBook, Thing::kCan, Thing::kMeshBox}) {
-    for (const Carrier carrier : {Carrier::kBoxPlate, Carrier::kDisc, Carrier::kMeshPlate, Carrier::kStaticBox}) {
+    for (const Carrier carrier :
+         {Carrier::kBoxPlate, Carrier::kDisc, Carrier::kMeshPlate, Carrier::kStaticBox}) {
       cases.push_back({thing, carrier});
     }
   }

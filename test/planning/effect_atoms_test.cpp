@@ -1,8 +1,6 @@
 // What the variables of an operator's deletes and adds stand for is the same for the search, for
 // whoever checks its plans and for the reasons of their steps.
 
-#include "hires/planning/domain.h"
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -10,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "hires/planning/domain.h"
 #include "hires/planning/reasons.h"
 #include "hires/planning/validator.h"
 #include "planning/support/conditions.h"

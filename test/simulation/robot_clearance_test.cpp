@@ -159,7 +159,8 @@ geometry::Collision AsOneMesh(const std::vector<geometry::Collision>& boxes) {
     const auto one = test_support::BoxMesh(std::get<geometry::Box>(box.shape).size);
     const int first = static_cast<int>(mesh->vertices.size());
     for (const Eigen::Vector3d& corner : one->vertices) mesh->vertices.push_back(box.X_BS * corner);
-    for (const auto& t : one->triangles) mesh->triangles.push_back({first + t[0], first + t[1], first + t[2]});
+    for (const auto& t : one->triangles)
+      mesh->triangles.push_back({first + t[0], first + t[1], first + t[2]});
   }
   all.shape = std::shared_ptr<const geometry::TriangleMesh>(mesh);
   all.X_BS = {};
@@ -169,10 +170,12 @@ geometry::Collision AsOneMesh(const std::vector<geometry::Collision>& boxes) {
 std::vector<geometry::Collision> RandomBoxes(int count, double reach, base::Rng* rng) {
   std::vector<geometry::Collision> boxes;
   for (int k = 0; k < count; ++k) {
-    boxes.push_back(Shape("part", geometry::Box{{rng->Uniform(0.05, 1.0), rng->Uniform(0.05, 1.0),
-                                                 rng->Uniform(0.05, 0.6)}},
-                          {rng->Uniform(-reach, reach), rng->Uniform(-reach, reach), rng->Uniform(0.0, 1.0)}));
-    boxes.back().X_BS.rotation = Eigen::AngleAxisd(rng->Uniform(-3.0, 3.0), Eigen::Vector3d::UnitZ());
+    boxes.push_back(Shape(
+        "part",
+        geometry::Box{{rng->Uniform(0.05, 1.0), rng->Uniform(0.05, 1.0), rng->Uniform(0.05, 0.6)}},
+        {rng->Uniform(-reach, reach), rng->Uniform(-reach, reach), rng->Uniform(0.0, 1.0)}));
+    boxes.back().X_BS.rotation =
+        Eigen::AngleAxisd(rng->Uniform(-3.0, 3.0), Eigen::Vector3d::UnitZ());
   }
   return boxes;
 }
@@ -191,7 +194,8 @@ TEST(RobotClearanceTest, BoxesTouchTheSameAsOneMesh) {
     const RobotClearance boxes(robot, WorldOf({house})), meshes(robot, WorldOf({mesh_house})),
         own(mesh_robot, WorldOf({house})), both(mesh_robot, WorldOf({mesh_house}));
     for (int k = 0; k < 50; ++k) {
-      const geometry::Pose2 X_MB{rng.Uniform(-3.0, 3.0), rng.Uniform(-3.0, 3.0), rng.Uniform(-3.0, 3.0)};
+      const geometry::Pose2 X_MB{rng.Uniform(-3.0, 3.0), rng.Uniform(-3.0, 3.0),
+                                 rng.Uniform(-3.0, 3.0)};
       const bool touches = boxes.FindContact(X_MB).has_value();
       num_touching += touches ? 1 : 0;
       ASSERT_EQ(meshes.FindContact(X_MB).has_value(), touches) << i << " " << k;
@@ -218,10 +222,10 @@ TEST(RobotClearanceTest, WhatAWallOfOneSurfaceGoesRoundIsFree) {
   };
   for (int k = 0; k < 4; ++k) {
     const int next = (k + 1) % 4;
-    quad(k, next, 8 + next, 8 + k);              // outside
-    quad(4 + next, 4 + k, 12 + k, 12 + next);    // inside
-    quad(8 + k, 8 + next, 12 + next, 12 + k);    // above
-    quad(next, k, 4 + k, 4 + next);              // below
+    quad(k, next, 8 + next, 8 + k);            // outside
+    quad(4 + next, 4 + k, 12 + k, 12 + next);  // inside
+    quad(8 + k, 8 + next, 12 + next, 12 + k);  // above
+    quad(next, k, 4 + k, 4 + next);            // below
   }
   world::StaticBody wall;
   wall.name = "wall";

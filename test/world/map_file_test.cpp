@@ -65,9 +65,10 @@ TEST_F(MapFileTest, GreyThatCountsAsFreeIsWarnedOf) {
     const test_support::LogCatcher log(base::LogLevel::kWarn);
     EXPECT_EQ(Load(generous).at(3, 1), Cell::kFree) << "the answer stays that of map_server";
     ASSERT_EQ(log.lines.size(), 1u);
-    EXPECT_THAT(log.lines[0],
-                AllOf(HasSubstr("m.yaml: 4 of 8 cells are grey in m.pgm (most of them 205)"),
-                      HasSubstr("0.196, lies below free_thresh 0.25"), HasSubstr("free_thresh: 0.137")));
+    EXPECT_THAT(
+        log.lines[0],
+        AllOf(HasSubstr("m.yaml: 4 of 8 cells are grey in m.pgm (most of them 205)"),
+              HasSubstr("0.196, lies below free_thresh 0.25"), HasSubstr("free_thresh: 0.137")));
   }
   const test_support::LogCatcher log(base::LogLevel::kWarn);
   generous.replace(generous.find("0.25"), 4, "0.137");

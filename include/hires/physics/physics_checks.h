@@ -24,8 +24,8 @@ struct PhysicsCheck {
 std::vector<PhysicsCheck> RunPhysicsChecks(const UprightCylinder& body,
                                            const std::string& body_name);
 
-/// Boxes, a cylinder and a mesh at rest on plates of 0.005 to 0.1 m, parallel to their edges and turned,
-/// and the onset of tipping of a box over each of its edges. Takes seconds.
+/// Boxes, a cylinder and a mesh at rest on plates of 0.005 to 0.1 m, parallel to their edges and
+/// turned, and the onset of tipping of a box over each of its edges. Takes seconds.
 std::vector<PhysicsCheck> RunShapeChecks();
 
 }  // namespace hires::physics

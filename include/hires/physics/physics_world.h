@@ -111,9 +111,9 @@ class PhysicsWorld {
   /// What touched at the beginning of the last step; held bodies and their grip left out.
   const std::vector<Touch>& touches() const;
   /// The first loose body that gained energy which nothing gave it: within one step more than
-  /// kUnexplained beyond what gravity, shaking and the fastest surface that touched anything can have
-  /// done. Then contacts were computed wrongly or bodies stood in each other, and what this world says
-  /// from there on means nothing.
+  /// kUnexplained beyond what gravity, shaking and the fastest surface that touched anything can
+  /// have done. Then contacts were computed wrongly or bodies stood in each other, and what this
+  /// world says from there on means nothing.
   std::optional<BodyId> broken() const;
   /// [J/kg] Enough for 0.7 m/s from rest, or 2.5 cm of height. What repairing ordinary penetrations
   /// gives lies below a third of it.

@@ -22,9 +22,9 @@ class TouchShape;
 
 /// Tells whether the robot, moving in the plane with its joints frozen, touches a static body. Each
 /// shape that is no mesh counts as the upright prism over its outline between its lowest and its
-/// highest point: exact for upright boxes and cylinders, never too small for anything else. A mesh, the
-/// robot's own or an obstacle's, is where its triangles are: what a wall goes round is free, and so is
-/// what is below a table.
+/// highest point: exact for upright boxes and cylinders, never too small for anything else. A mesh,
+/// the robot's own or an obstacle's, is where its triangles are: what a wall goes round is free,
+/// and so is what is below a table.
 class RobotClearance {
  public:
   /// @param robot_B  collision shapes in the base frame.

@@ -88,8 +88,8 @@ class RobotSimulator {
   /// It stands on, or up to 0.06 m above, a part of the robot that moves with its base.
   bool StandsOnRobot(int object) const;
 
-  /// The first object that gained energy which nothing gave it (PhysicsWorld::broken): what is played
-  /// from there on means nothing.
+  /// The first object that gained energy which nothing gave it (PhysicsWorld::broken): what is
+  /// played from there on means nothing.
   std::optional<int> broken_object() const;
 
   /// Something touches it, or a hand holds it; as of the beginning of the last step.

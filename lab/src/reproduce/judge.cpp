@@ -6,9 +6,9 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "reports/text/known_number.h"
 #include "hires/base/error.h"
 #include "hires/base/text.h"
+#include "reports/text/known_number.h"
 #include "reports/text/report_table.h"
 
 namespace hires::lab {

@@ -9,11 +9,11 @@
 #include <optional>
 #include <thread>
 
+#include "cli/report_output.h"
 #include "hires/base/error.h"
 #include "hires/base/process.h"
 #include "hires/base/run_processes.h"
 #include "hires/base/text.h"
-#include "cli/report_output.h"
 
 namespace hires::lab {
 namespace {
@@ -156,9 +156,9 @@ class PlayRunner {
     }
     std::vector<std::string> words{ProgramNameOf(play)};
     words.insert(words.end(), play.command.begin(), play.command.end());
-    done_.answers[play.name] = {std::move(content),      store_.KeyOf(play), stored.build,
-                                cli::CommandText(words), stored.seconds,     stored.date,
-                                is_new};
+    done_.answers[play.name] = {
+        std::move(content), store_.KeyOf(play), stored.build, cli::CommandText(words),
+        stored.seconds,     stored.date,        is_new};
   }
 
   const PlaysOrder& order_;

@@ -2,15 +2,15 @@
 
 #include <CLI/CLI.hpp>
 
+#include "cli/program.h"
+#include "cli/verb_table.h"
+#include "lab/src/experiment/hypothesis_play.h"
 #include "lab/src/verbs/experiences_command.h"
 #include "lab/src/verbs/experiment_command.h"
 #include "lab/src/verbs/list_command.h"
 #include "lab/src/verbs/publish_command.h"
 #include "lab/src/verbs/reproduce_command.h"
 #include "lab/src/verbs/scenarios_command.h"
-#include "lab/src/experiment/hypothesis_play.h"
-#include "cli/program.h"
-#include "cli/verb_table.h"
 
 namespace hires::lab {
 namespace {
@@ -20,8 +20,10 @@ constexpr char kProgramName[] = "hires_lab";
 int RunAnyExperiment(const ExperimentOptions& options, const LabBackends& backends) {
   const std::string& folder = backends.package_folder;
   if (*options.decision.verb) return RunDecisionVerb(options.decision, folder, cli::IsInterrupted);
-  if (*options.pose_error.verb) return RunPoseErrorVerb(options.pose_error, folder, cli::IsInterrupted);
-  if (*options.detector.verb) return RunDetectorFitVerb(options.detector, folder, cli::IsInterrupted);
+  if (*options.pose_error.verb)
+    return RunPoseErrorVerb(options.pose_error, folder, cli::IsInterrupted);
+  if (*options.detector.verb)
+    return RunDetectorFitVerb(options.detector, folder, cli::IsInterrupted);
   if (*options.ladder.verb) return RunLadderVerb(options.ladder, folder, cli::IsInterrupted);
   if (*options.recognition.verb) {
     return RunRecognitionVerb(options.recognition, folder, cli::IsInterrupted);
@@ -30,13 +32,14 @@ int RunAnyExperiment(const ExperimentOptions& options, const LabBackends& backen
     return RunTorsoPosesVerb(options.torso_poses, folder, cli::IsInterrupted);
   }
   if (*options.hypothesis.verb) {
-    return RunHypothesisVerb(options.hypothesis, folder, backends.play_hypothesis, cli::IsInterrupted);
+    return RunHypothesisVerb(options.hypothesis, folder, backends.play_hypothesis,
+                             cli::IsInterrupted);
   }
   return RunExperimentVerb(options, cli::IsInterrupted);
 }
 
 std::vector<cli::ProgramVerb> VerbsOf(CLI::App* app, const std::vector<std::string>& arguments,
-                                 const LabBackends& backends) {
+                                      const LabBackends& backends) {
   const std::string& folder = backends.package_folder;
   cli::VerbTable table(app, {cli::CommandOf(kProgramName, arguments), folder});
   const auto report_of_experiment = [&table](ExperimentOptions* options) {

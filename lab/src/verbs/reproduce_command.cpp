@@ -1,4 +1,3 @@
-#include "lab/src/product_program.h"
 #include "lab/src/verbs/reproduce_command.h"
 
 #include <fmt/format.h>
@@ -10,17 +9,18 @@
 #include <map>
 #include <nlohmann/json.hpp>
 
-#include "lab/src/verbs/plays_display.h"
-#include "lab/src/reproduce/play_runner.h"
-#include "lab/src/reproduce/play_store.h"
+#include "cli/exit_code.h"
 #include "hires/base/error.h"
 #include "hires/base/files/writer_lock.h"
 #include "hires/base/spelling.h"
 #include "hires/base/text.h"
-#include "cli/exit_code.h"
-#include "reports/text/report_table.h"
+#include "lab/src/product_program.h"
 #include "lab/src/reproduce/catalogue.h"
 #include "lab/src/reproduce/judge.h"
+#include "lab/src/reproduce/play_runner.h"
+#include "lab/src/reproduce/play_store.h"
+#include "lab/src/verbs/plays_display.h"
+#include "reports/text/report_table.h"
 
 namespace hires::lab {
 namespace {
@@ -103,8 +103,8 @@ int RunReproduceVerb(const ReproduceOptions& options, const std::string& package
                      const std::function<bool()>& cancelled) {
   const std::string path = CataloguePath(options, package_folder);
   const Catalogue catalogue = ReadCatalogue(path);
-  const std::vector<CatalogueItem> items = ItemsOf(
-      catalogue, options.wanted.empty() ? std::vector<std::string>{"all"} : options.wanted);
+  const std::vector<CatalogueItem> items =
+      ItemsOf(catalogue, options.wanted.empty() ? std::vector<std::string>{"all"} : options.wanted);
   PlaysOrder order;
   order.plays = PlaysFor(catalogue, items);
   order.lab_program = std::filesystem::read_symlink("/proc/self/exe").string();

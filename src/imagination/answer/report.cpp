@@ -44,10 +44,12 @@ void AddVoid(Report* report) {
     }
   }
   if (num_void == 0) return;
-  report->caveats.push_back(fmt::format(
-      "{} of {} rollouts are void (physics_broke): {} gained energy that nothing gave it. They count as not "
-      "succeeded, and say nothing of the robot; look at its shapes with `hires doctor`",
-      num_void, num_rollouts, base::Join(std::vector<std::string>(names.begin(), names.end()), ", ")));
+  report->caveats.push_back(
+      fmt::format("{} of {} rollouts are void (physics_broke): {} gained energy that nothing gave "
+                  "it. They count as not "
+                  "succeeded, and say nothing of the robot; look at its shapes with `hires doctor`",
+                  num_void, num_rollouts,
+                  base::Join(std::vector<std::string>(names.begin(), names.end()), ", ")));
 }
 
 }  // namespace

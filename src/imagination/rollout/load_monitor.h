@@ -40,7 +40,9 @@ class LoadMonitor {
   double max_tilt() const { return max_tilt_; }  ///< [rad]
   /// Objects that fell over, slid off the robot, or were knocked over (see KnockedOver).
   int falls() const { return falls_; }
-  bool is_lost() const { return bool(lost_); }  ///< physics gave an object a pose that is not finite
+  bool is_lost() const {
+    return bool(lost_);
+  }  ///< physics gave an object a pose that is not finite
   const base::Failure& why_lost() const { return lost_; }  ///< which, or nothing
   const std::string& first_cause() const { return first_cause_; }
 

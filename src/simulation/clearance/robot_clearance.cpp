@@ -35,8 +35,14 @@ std::optional<RobotClearance::Prism> RobotClearance::MakePrism(const std::string
   const auto outline =
       geometry::OutlineInBand(shape.shape, X_WS, bounds.lower.z(), bounds.upper.z());
   if (!outline) return std::nullopt;
-  Prism prism{name, *outline, bounds.lower.z(), bounds.upper.z(), {0.0, 0.0}, 0.0,
-              std::make_shared<const TouchShape>(shape.shape), X_WS};
+  Prism prism{name,
+              *outline,
+              bounds.lower.z(),
+              bounds.upper.z(),
+              {0.0, 0.0},
+              0.0,
+              std::make_shared<const TouchShape>(shape.shape),
+              X_WS};
   for (const Eigen::Vector2d& p : *outline) prism.centre += p / outline->size();
   for (const Eigen::Vector2d& p : *outline) {
     prism.radius = std::max(prism.radius, (p - prism.centre).norm());

@@ -35,16 +35,15 @@ Solid MakeMesh(const geometry::TriangleMesh& mesh) {
 
 Solid MakeSolid(const geometry::Shape& shape) {
   const Solid solid = std::visit(
-      base::Overloaded{[](const geometry::Box& box) -> Solid {
-                         return std::make_shared<fcl::Boxd>(box.size);
-                       },
-                       [](const geometry::Cylinder& c) -> Solid {
-                         return std::make_shared<fcl::Cylinderd>(c.radius, c.length);
-                       },
-                       [](const geometry::Sphere& s) -> Solid {
-                         return std::make_shared<fcl::Sphered>(s.radius);
-                       },
-                       [](const Mesh& mesh) -> Solid { return MakeMesh(*mesh); }},
+      base::Overloaded{
+          [](const geometry::Box& box) -> Solid { return std::make_shared<fcl::Boxd>(box.size); },
+          [](const geometry::Cylinder& c) -> Solid {
+            return std::make_shared<fcl::Cylinderd>(c.radius, c.length);
+          },
+          [](const geometry::Sphere& s) -> Solid {
+            return std::make_shared<fcl::Sphered>(s.radius);
+          },
+          [](const Mesh& mesh) -> Solid { return MakeMesh(*mesh); }},
       shape);
   solid->computeLocalAABB();
   return solid;
@@ -123,9 +122,9 @@ double TouchShape::Distance(const geometry::Pose3& X_MS, const TouchShape& other
   if (Touches(X_MS, other, X_MO)) return 0.0;
   const fcl::DistanceRequestd request;
   fcl::DistanceResultd result;
-  return std::max(0.0, fcl::distance(geometry_->solid.get(), ToIsometry(X_MS),
-                                     other.geometry_->solid.get(), ToIsometry(X_MO), request,
-                                     result));
+  return std::max(
+      0.0, fcl::distance(geometry_->solid.get(), ToIsometry(X_MS), other.geometry_->solid.get(),
+                         ToIsometry(X_MO), request, result));
 }
 
 }  // namespace hires::simulation

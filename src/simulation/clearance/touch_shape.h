@@ -7,9 +7,9 @@
 
 namespace hires::simulation {
 
-/// A shape as it is, to be asked whether it touches another one: a mesh is where its triangles are, and
-/// what it goes round is free; a part of it that is closed and convex is solid, as the planner takes it.
-/// Constant, so any number of threads may ask.
+/// A shape as it is, to be asked whether it touches another one: a mesh is where its triangles are,
+/// and what it goes round is free; a part of it that is closed and convex is solid, as the planner
+/// takes it. Constant, so any number of threads may ask.
 class TouchShape {
  public:
   explicit TouchShape(const geometry::Shape& shape);  ///< @pre a mesh has triangles
@@ -25,7 +25,8 @@ class TouchShape {
                   const geometry::Pose3& X_MO) const;
 
  private:
-  /// Whether it touches or lies within a solid part. @param p_S  of something that touches no triangle
+  /// Whether it touches or lies within a solid part. @param p_S  of something that touches no
+  /// triangle
   bool Contains(const Eigen::Vector3d& p_S) const;
 
   struct Geometry;

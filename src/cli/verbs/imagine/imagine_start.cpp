@@ -139,7 +139,8 @@ void AddStartOptions(CLI::App* app, StartOptions* o) {
   app->add_option("--posture", o->postures,
                   "ARM:POSTURE or torso1:POSTURE; the driving posture where none is given")
       ->allow_extra_args(false);
-  app->add_option("--put", o->put, std::string("what stands about, named as for --object: ") + kPutWanted)
+  app->add_option("--put", o->put,
+                  std::string("what stands about, named as for --object: ") + kPutWanted)
       ->allow_extra_args(false);
 }
 
