@@ -122,7 +122,7 @@ TEST(SelfFilterTest, CutsAllPointsWithinThePaddingAndNoneBeyondIt) {
 
 TEST(SelfFilterTest, CutsWhatVeilsAnEdgeAndNothingElseBehindTheRobot) {
   int num_veils = 0, num_steady = 0;
-  for (int seed = 0; seed < test_support::Rounds(25); ++seed) {
+  for (int seed = 0; seed < 25; ++seed) {
     base::Rng rng(1000 + seed);
     const auto parts = AnyParts(&rng);
     const SelfFilterParams params{0.03, 0.05};

@@ -104,7 +104,7 @@ INSTANTIATE_TEST_SUITE_P(
         Case{"CalledFor", "((n ?n))", "((n ?n))", "((n (call + ?n ?g)))", "2", "((n 3))", "(n 1)",
              "(n 3)"},
         Case{"BoundByAnImply", "((imply (n 1) (old ?x)))", "((old ?x))", "((p ?x))", "1",
-             "((p b) (not (old b)))", "(old b)", "(p b)"},
+             "((p a) (not (old a)))", "(old a)", "(p a)"},
         Case{"BoundByNoExists", "((exists (?x) ((old ?x)) ((old ?y))))", "((old ?y))", "()", "1",
              "((old a) (old b))", "", ""},
         Case{"Quoted", "()", "()", "((p '(a ?g)))", "b", "((p (a b)))", "", "(p (a b))"},
