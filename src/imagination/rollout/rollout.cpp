@@ -77,7 +77,9 @@ class Player {
       }
       if (simulator_.contact()) status = skills::Failed(Collision());
       if (monitor.is_lost()) status = skills::Failed(monitor.why_lost());
-      if (simulator_.broken_object()) status = skills::Failed(Code::kPhysicsBroke);
+      // What is down may be run over, and jump: the fall came before, and counts.
+      is_void_ = is_void_ || (simulator_.broken_object() && monitor.falls() == 0);
+      if (is_void_) status = skills::Failed(Code::kPhysicsBroke);
       if (elapsed >= params_.time_limit) status = skills::Failed(Code::kTimedOut);
     }
     result_.duration = simulator_.time() - start;
@@ -173,8 +175,9 @@ class Player {
       result_.failure = Code::kNoSamples;
     }
     result_.falls = monitor.falls();
-    if (const std::optional<int> broken = simulator_.broken_object()) {
-      const std::string& name = simulator_.GetWorldState().objects.at(*broken).name;
+    if (is_void_) {
+      const int broken = *simulator_.broken_object();
+      const std::string name = simulator_.GetWorldState().objects.at(broken).name;
       result_.failure = {Code::kPhysicsBroke, {name}, name + " gained energy that nothing gave it"};
       result_.outcome = Outcome::kFailed;
       result_.falls = 0;  // what moved it was no drive
@@ -197,6 +200,7 @@ class Player {
   FloorObjects floor_;
   double start_{0.0}, next_cycle_{0.0};  // [s]
   long samples_{0};
+  bool is_void_{false};  // physics broke before anything fell
   RolloutResult result_;
 };
 
