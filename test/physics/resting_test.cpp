@@ -12,6 +12,7 @@
 #include "hires/geometry/angles.h"
 #include "hires/physics/physics_world.h"
 #include "physics/scenes.h"
+#include "support/rounds.h"
 
 namespace hires::physics::resting_test {
 namespace {
@@ -20,7 +21,6 @@ using Eigen::AngleAxisd;
 using Eigen::Vector3d;
 using geometry::Pose3;
 
-constexpr int kTruths = 1000;
 constexpr int kSteps = 200;
 constexpr double kMoved = 1e-3;  // [m]
 
@@ -107,7 +107,8 @@ TEST_P(RestingTest, StaysWhereItIs) {
   const base::Rng seed(2026);
   int num_moved = 0;
   double farthest = 0.0;
-  for (int i = 0; i < kTruths; ++i) {
+  const int num_truths = test_support::Rounds(1000);
+  for (int i = 0; i < num_truths; ++i) {
     base::Rng rng = seed.Fork(i);
     Scene scene;
     AddCarrier(GetParam().carrier, &rng, &scene);
@@ -127,7 +128,7 @@ TEST_P(RestingTest, StaysWhereItIs) {
     farthest = std::max(farthest, moved);
     if (moved > kMoved || scene.world.broken()) ++num_moved;
   }
-  EXPECT_EQ(num_moved, 0) << "of " << kTruths << "; the farthest by " << farthest << " m";
+  EXPECT_EQ(num_moved, 0) << "of " << num_truths << "; the farthest by " << farthest << " m";
 }
 
 std::vector<Case> AllCases() {
