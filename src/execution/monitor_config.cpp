@@ -40,7 +40,7 @@ MonitorParams ReadMonitor(ParamReader in) {
 ImaginingParams ReadImagining(ParamReader in) {
   ImaginingParams params;
   params.rollouts = in.Get("rollouts", Between(1, 100'000));
-  params.ranking = in.Get("ranking", base::OneOf({"", "risk", "thesis"}));
+  params.ranking = in.Get("ranking", base::OneOf({"", "cost", "risk", "thesis"}));
   params.seed = static_cast<std::uint64_t>(in.Get("seed", Between(0, 2'147'483'647)));
   return params;
 }

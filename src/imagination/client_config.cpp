@@ -1,5 +1,7 @@
 #include "hires/imagination/client_config.h"
 
+#include <filesystem>
+
 #include "hires/base/param_reader.h"
 #include "hires/imagination/imagination_setup.h"
 
@@ -11,6 +13,15 @@ base::ParamReader FileAt(const std::string& key, const std::string& path, base::
   return base::ParamReader::FromFile(ResolvePath(in->GetString(key), path));
 }
 
+/// A ranking by cost needs prices; a file that names none has those of the scene that it names.
+base::ParamReader PricesOf(const std::string& path, const std::string& scene,
+                           base::ParamReader* in) {
+  if (in->Has("prices")) return FileAt("prices", path, in);
+  const std::string beside_scene = ResolvePath("prices.yaml", scene);
+  return base::ParamReader::FromFile(
+      std::filesystem::exists(beside_scene) ? beside_scene : ResolvePath("prices.yaml", path));
+}
+
 }  // namespace
 
 ClientConfig ReadClientConfig(const std::string& path) {
@@ -18,7 +29,7 @@ ClientConfig ReadClientConfig(const std::string& path) {
   ClientConfig config;
   config.scene = ResolvePath(in.GetString("scene"), path);
   config.scheduler = ReadSchedulerParams(in.Sub("scheduler"));
-  config.scheduler.criteria.prices = ReadPrices(FileAt("prices", path, &in));
+  config.scheduler.criteria.prices = ReadPrices(PricesOf(path, config.scene, &in));
   config.validated = ReadValidated(FileAt("validated", path, &in));
   config.kept_rollouts = in.Get("kept_rollouts", base::Between(0, 1000000));
   config.feedback_period = in.Get("feedback_period", base::Between(0.01, 10.0));

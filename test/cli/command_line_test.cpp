@@ -94,6 +94,8 @@ TEST(CommandLineTest, ImaginesAndWritesWhatItFound) {
                                HasSubstr("ranked: "), HasSubstr("times as fast as real time")));
   const auto answer = nlohmann::json::parse(base::ReadTextFile(json));
   EXPECT_EQ(answer.at("outcome"), "ranked");
+  EXPECT_TRUE(answer.at("by_cost").is_object()) << "the default is cost";
+  EXPECT_TRUE(answer.at("ranking").at(0).at("expected_cost").is_object());
   EXPECT_EQ(answer.at("ranking").at(0).at("rollouts"), 2);
   EXPECT_EQ(answer.at("seed"), 1);
   const auto& first = answer.at("ranking").at(0);
@@ -408,8 +410,8 @@ TEST(CommandLineTest, RefusesNumbersOutOfRange) {
     ExpectRefused(with("--seed", seed),
                   {"hires: --seed", "no whole number", "hires imagine --help"});
   }
-  ExpectRefused(with("--ranking", "luck"), {"luck", "risk", "thesis"});
-  ExpectRefused(with("--ranking", "best"), {"did you mean one of 'risk', 'cost', 'thesis'?"});
+  ExpectRefused(with("--ranking", "luck"), {"luck", "cost", "risk", "thesis"});
+  ExpectRefused(with("--ranking", "best"), {"did you mean one of 'cost', 'risk', 'thesis'?"});
 }
 
 TEST(CommandLineTest, RefusesWhatTheWorldDoesNotKnow) {

@@ -45,13 +45,40 @@ TEST(ClientConfigTest, ReadsTheConfiguredFile) {
   EXPECT_EQ(config.worker_timeout, 3.5);
   EXPECT_EQ(config.scheduler.rollouts, 24);
   EXPECT_EQ(config.scheduler.criteria.min_success, 0.5);
+  EXPECT_EQ(config.scheduler.criteria.rule, RankingRule::kCost);
   EXPECT_FALSE(config.scheduler.criteria.prices.empty());
   EXPECT_FALSE(config.validated.objects.empty());
 }
 
+TEST(ClientConfigTest, PricesThatAreNotNamedAreThoseOfTheSceneElseThoseBeside) {
+  const TemporaryFolder folder;
+  YAML::Node root = Configured();
+  root.remove("prices");
+  root["scene"] = std::string(HIRES_SOURCE_DIR) + "/config/scene.yaml";
+  const auto price = [&] {
+    const ClientConfig config = ReadClientConfig(folder.Write("client.yaml", YAML::Dump(root)));
+    return config.scheduler.criteria.prices.of.at(base::FailureCode::kObjectFell);
+  };
+  EXPECT_EQ(price(), 600.0);
+  YAML::Node own = YAML::LoadFile(std::string(HIRES_SOURCE_DIR) + "/config/prices.yaml");
+  own["object_fell"] = 7.0;
+  folder.Write("prices.yaml", YAML::Dump(own));
+  EXPECT_EQ(price(), 600.0);
+  root["scene"] = "scene.yaml";
+  EXPECT_EQ(price(), 7.0);
+  root["prices"] = std::string(HIRES_SOURCE_DIR) + "/config/prices.yaml";
+  EXPECT_EQ(price(), 600.0) << "a file that names its prices keeps them";
+}
+
+TEST(ClientConfigTest, WithoutAnyPricesTheMissingFileIsNamed) {
+  YAML::Node root = Configured();
+  root.remove("prices");
+  EXPECT_THAT(WhyRefused(root), AllOf(HasSubstr("prices.yaml"), HasSubstr("no such file")));
+}
+
 TEST(ClientConfigTest, EveryKeyIsNeeded) {
-  for (const char* key : {"scene", "scheduler", "prices", "validated", "kept_rollouts",
-                          "feedback_period", "worker_timeout"}) {
+  for (const char* key :
+       {"scene", "scheduler", "validated", "kept_rollouts", "feedback_period", "worker_timeout"}) {
     YAML::Node root = Configured();
     root.remove(key);
     EXPECT_THAT(WhyRefused(root),

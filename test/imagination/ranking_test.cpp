@@ -2,6 +2,8 @@
 
 #include <gmock/gmock.h>
 
+#include <algorithm>
+
 #include "hires/base/error.h"
 #include "imagination/rollout_examples.h"
 
@@ -136,13 +138,37 @@ TEST(RankTest, OrderOfTheRequestDoesNotMatterWhereNothingIsEqual) {
     const base::Rng rng = base::Rng(3).Fork(seed);
     std::vector<Evidence> evidence;
     for (int a = 0; a < 6; ++a) {
-      evidence.push_back(SumUp(InventAll({0.1 * a, 0.1, 20.0 + a, 30}, rng.Fork(a), 20)));
+      evidence.push_back(SumUp(InventAll({0.1 * a, 0.1, 20.0 + a, 30}, rng.Fork(a), 20), 20,
+                               IntervalKind::kClopperPearson, kDear.prices));
     }
     const std::vector<Evidence> reversed(evidence.rbegin(), evidence.rend());
-    for (const Criteria& rule : {kRisk, kThesis}) {
+    for (const Criteria& rule : {kRisk, kDear, kThesis}) {
       std::vector<int> expected;
       for (const int i : Rank(evidence, rule)) expected.push_back(5 - i);
       EXPECT_EQ(Rank(reversed, rule), expected);
+    }
+  }
+}
+
+TEST(RankTest, OneMoreFallNeverMakesAnAlternativeRankBetter) {
+  for (int seed = 0; seed < 200; ++seed) {
+    base::Rng rng = base::Rng(5).Fork(seed);
+    std::vector<Results> results;
+    for (int a = 0; a < 4; ++a) {
+      results.push_back(InventAll({0.2 * a, 0.05, 20.0 + 3.0 * a, 30}, rng.Fork(a), 20));
+    }
+    const int which = rng.Index(4);
+    RolloutResult& spoilt = results[which][rng.Index(20)];
+    for (const Criteria& criteria : {kRisk, kCheap, kDear}) {
+      const auto place = [&] {
+        const std::vector<int> order = Rank(SumUpAll(results, criteria), criteria);
+        return std::find(order.begin(), order.end(), which) - order.begin();
+      };
+      const RolloutResult was = spoilt;
+      const auto before = place();
+      if (!FailureOf(was)) spoilt = Fall(was.duration);
+      EXPECT_GE(place(), before) << "seed " << seed;
+      spoilt = was;
     }
   }
 }
@@ -185,6 +211,20 @@ TEST(RankTest, PricesDecideWhetherAFallIsWorthTheTime) {
                                      Times(64, Success(30.0))};
   EXPECT_THAT(Rank(SumUpAll(results, kCheap), kCheap), ElementsAre(0, 1));  // 26.3 s against 30 s
   EXPECT_THAT(Rank(SumUpAll(results, kDear), kDear), ElementsAre(1, 0));    // 57.5 s against 30 s
+}
+
+TEST(RankTest, TheQuickerOfTwoThatNeverFailIsFirstHoweverMuchItShakes) {
+  const std::vector<Results> results{Times(16, Success(22.4)), Times(16, Success(10.2, 13))};
+  const auto evidence = SumUpAll(results, kDear);
+  EXPECT_THAT(Rank(evidence, kDear), ElementsAre(1, 0));
+  EXPECT_EQ(Recommended(evidence, kDear), 1);
+  EXPECT_THAT(Rank(evidence, kRisk), ElementsAre(0, 1)) << "or the test could not fail";
+}
+
+TEST(RankTest, OneFallInSixteenIsNotTakenForNone) {
+  const std::vector<Results> results{Times(15, Success(10.2)) + Times(1, Fall(10.2)),
+                                     Times(16, Success(22.4))};
+  EXPECT_THAT(Rank(SumUpAll(results, kDear), kDear), ElementsAre(1, 0));
 }
 
 TEST(RankTest, CheapButNotGoodEnoughComesLaterUnderCost) {
@@ -302,7 +342,7 @@ TEST(WhyRecommendedTest, CostDecides) {
       SumUpAll({Times(60, Success(20.0)) + Times(4, Fall(20.0)), Times(64, Success(30.0))}, kCheap);
   EXPECT_EQ(WhyRecommended(evidence, kCheap, kNames),
             "fast: 60 of 64 rollouts succeeded (at least 84 %), good enough like slow, and its "
-            "expected cost is lower, 26.250 s against 30.000 s");
+            "expected cost is lower, 26.2 s against 30.0 s");
 }
 
 TEST(WhyRecommendedTest, EachAlternativeNeedsAName) {

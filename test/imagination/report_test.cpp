@@ -58,6 +58,57 @@ RolloutResult EndingAt(RolloutResult result, double x) {
 
 Report Make(const Scheduler& scheduler) { return MakeReport(scheduler, kActions, 7, 1.5); }
 
+/// Three workers play what they are given, and who got work last tells first, the last rollout
+/// first.
+void PlayBackwards(Scheduler* scheduler, const std::vector<std::vector<RolloutResult>>& results) {
+  std::vector<Assign> open;
+  const auto collect = [&](const std::vector<Command>& commands) {
+    for (const Command& command : commands) {
+      if (const auto* assign = std::get_if<Assign>(&command)) open.push_back(*assign);
+    }
+  };
+  for (const int worker : {0, 1, 2}) collect(scheduler->Handle(WorkerJoined{worker}, 0.1));
+  while (!open.empty() && !scheduler->finished()) {
+    const Assign work = open.back();
+    open.pop_back();
+    for (int i = work.first_index + work.count - 1; i >= work.first_index; --i) {
+      scheduler->Handle(RolloutFinished{work.worker, work.assignment, work.alternative, i,
+                                        results[work.alternative][i]},
+                        0.2);
+    }
+    collect(scheduler->Handle(AssignmentFinished{work.worker, work.assignment}, 0.3));
+  }
+}
+
+TEST(ReportTest, AnyOrderOfArrivalGivesTheSameReasonsToTheBit) {
+  SchedulerParams params = AllOf4();
+  params.rollouts = 32;
+  params.criteria = {
+      RankingRule::kCost,
+      0.5,
+      {{{base::FailureCode::kObjectFell, 600.0}, {base::FailureCode::kOther, 50.0}}, 300.0}};
+  std::vector<std::vector<RolloutResult>> results(2);
+  for (int i = 0; i < 32; ++i) {
+    results[0].push_back(i % 9 == 4 ? Fall(20.0 + 0.1 * i) : Success(20.0 + 0.3 * i));
+    results[1].push_back(i % 20 == 7 ? NoPath() : Success(31.0 + 0.7 * i));
+  }
+  Scheduler forwards(params, 2, 0.0), backwards(params, 2, 0.0);
+  PlayAll(&forwards, results);
+  PlayBackwards(&backwards, results);
+  const Report one = Make(forwards), other = Make(backwards);
+  ASSERT_TRUE(one.by_cost && one.by_cost->next && one.by_cost->turning);
+  EXPECT_EQ(one.why, other.why);
+  EXPECT_EQ(one.by_cost->prices, other.by_cost->prices);
+  EXPECT_EQ(one.by_cost->next->probability, other.by_cost->next->probability);
+  EXPECT_EQ(one.by_cost->next->failures_more_upper, other.by_cost->next->failures_more_upper);
+  EXPECT_EQ(one.by_cost->next->time_saved, other.by_cost->next->time_saved);
+  EXPECT_EQ(one.by_cost->turning->price, other.by_cost->turning->price);
+  EXPECT_EQ(one.recommended, 0);
+  EXPECT_EQ(one.by_cost->next->other, 1) << "a place of the ranking";
+  EXPECT_EQ(one.ranking[0].alternative, 1);
+  EXPECT_EQ(one.by_cost->turning->other, 1);
+}
+
 TEST(ReportTest, WhatIsKeptIsToldApartFromWhatWasPlayed) {
   Scheduler scheduler(AllOf4(), 2, 0.0);
   PlayAll(&scheduler,

@@ -324,6 +324,7 @@ TEST(CompareAnswersTest, EveryFieldIsComparedAndNamed) {
       {[](auto* r) { r->predictions.pop_back(); }, "number of predictions: 2 then, 1 now"},
       {[](auto* r) { r->recommended = 1; }, "recommended: 0 then, 1 now"},
       {[](auto* r) { r->why = "x"; }, "why: 'table1 is better' then, 'x' now"},
+      {[](auto* r) { r->by_cost.resize(1); }, "by_cost differs"},
       {[](auto* r) { r->depends_on.resize(1); }, "depends_on differs"},
       {[](auto* r) { r->seed = 8; }, "seed: 7 then, 8 now"},
       {[](auto* r) { r->simulated_seconds = 1; }, "simulated_seconds: 0 then, 1 now"},

@@ -52,6 +52,7 @@ class CoreTest(unittest.TestCase):
     def test_an_answer_has_what_its_json_has(self):
         told = json.loads(self.answer.json())
         self.assertEqual(self.answer.outcome, told['outcome'])
+        self.assertIsNotNone(told['by_cost'], 'the default is cost')
         self.assertEqual(self.answer.recommended.arguments,
                          tuple(told['ranking'][told['recommended']]['arguments']))
         for way, ranked in zip(self.answer.ranking, told['ranking']):

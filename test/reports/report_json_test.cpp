@@ -39,6 +39,23 @@ TEST(ReportJsonTest, NothingRecommendedIsNull) {
   EXPECT_EQ(json.at("real_time_factor"), 0.0);
 }
 
+TEST(ReportJsonTest, WhatStandsBehindACostIsToldByPlacesOfTheRanking) {
+  imagination::Report report = TwoAlternatives();
+  imagination::CostReasons reasons;
+  reasons.prices = {{base::FailureCode::kObjectFell, 600.0}};
+  reasons.next = imagination::CostComparison{1, -5.75, -150.0, 12.5, false, 0.875};
+  reasons.turning = imagination::TurningPrice{base::FailureCode::kObjectFell, 23.0, true, 1};
+  report.by_cost = reasons;
+  EXPECT_EQ(ToJson(report).at("by_cost").dump(),
+            R"({"prices":[{"failure":"object_fell","price":600.0}],)"
+            R"("next":{"place":1,"time_saved":-5.75,"failures_more":-150.0,)"
+            R"("failures_more_upper":12.5,"neither_failed":false,"alike":false,)"
+            R"("probability":0.875},)"
+            R"("turns":{"failure":"object_fell","price":23.0,"when":"less","place":1}})");
+  report.by_cost = imagination::CostReasons();
+  EXPECT_EQ(ToJson(report).at("by_cost").dump(), R"({"prices":[],"next":null,"turns":null})");
+}
+
 TEST(ReportJsonTest, MinSuccessIsToldUnlessTheRuleAsksForNone) {
   imagination::Criteria criteria;
   criteria.min_success = 0.8;

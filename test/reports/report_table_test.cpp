@@ -45,6 +45,9 @@ TEST(RankingTableTest, ShowsCostsWhereTheyDecide) {
   const std::string table = RankingTable(ranking, 0, true);
   EXPECT_THAT(table, HasSubstr("cost"));
   EXPECT_THAT(table, HasSubstr("20.0 s  16.0 .. 32.5 s"));
+  EXPECT_THAT(table, Not(HasSubstr("seconds;")));
+  EXPECT_THAT(RankingTable(ranking, 0, true, "a fall costs 600 s"),
+              HasSubstr("\ncost: seconds; a fall costs 600 s\n"));
 }
 
 TEST(RankingTableTest, SaysWhatKindOfIntervalsItShows) {

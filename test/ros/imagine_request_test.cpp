@@ -225,6 +225,31 @@ TEST(ReportMessageTest, WhatWasCancelledSaysWhatWasFound) {
   EXPECT_EQ(ToMsg(report).outcome, hires::ImagineResult::RANKED_AT_DEADLINE);
 }
 
+TEST(ConversionsTest, WhatStandsBehindACostTravels) {
+  using hires::base::FailureCode;
+  imagination::Report report;
+  EXPECT_FALSE(FromMsg(ToMsg(report)).by_cost);
+  report.by_cost = imagination::CostReasons();
+  EXPECT_TRUE(FromMsg(ToMsg(report)).by_cost);
+  EXPECT_FALSE(FromMsg(ToMsg(report)).by_cost->next);
+  EXPECT_FALSE(FromMsg(ToMsg(report)).by_cost->turning);
+  report.by_cost->prices = {{FailureCode::kObjectFell, 600.0}, {FailureCode::kNoPath, 60.0}};
+  report.by_cost->next = imagination::CostComparison{1, -5.0, -46.5, 12.5, true, 0.875};
+  report.by_cost->turning = imagination::TurningPrice{FailureCode::kObjectFell, 64.0, false, 2};
+  const imagination::CostReasons back = *FromMsg(ToMsg(report)).by_cost;
+  EXPECT_EQ(back.prices, report.by_cost->prices);
+  EXPECT_EQ(back.next->other, 1);
+  EXPECT_EQ(back.next->time_saved, -5.0);
+  EXPECT_EQ(back.next->failures_more, -46.5);
+  EXPECT_EQ(back.next->failures_more_upper, 12.5);
+  EXPECT_TRUE(back.next->neither_failed);
+  EXPECT_EQ(back.next->probability, 0.875);
+  EXPECT_EQ(back.turning->code, FailureCode::kObjectFell);
+  EXPECT_EQ(back.turning->price, 64.0);
+  EXPECT_FALSE(back.turning->is_below);
+  EXPECT_EQ(back.turning->other, 2);
+}
+
 TEST(ConversionsTest, UndecidedAndCaveatsTravel) {
   imagination::Report report;
   report.outcome = imagination::ImaginationOutcome::kUndecided;

@@ -17,6 +17,7 @@ struct ClientConfig {
   double worker_timeout{1.5};   ///< [s] without a sign of life after which a worker counts as lost
 };
 
+/// Where the file names no `prices`, prices.yaml beside the scene file, else the one beside `path`.
 /// @throws base::ConfigError naming file and key.
 ClientConfig ReadClientConfig(const std::string& path);
 

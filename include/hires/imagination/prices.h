@@ -12,6 +12,8 @@
 
 namespace hires::imagination {
 
+inline constexpr double kHighestPrice = 1e5;  ///< [s] about a day
+
 /// What failures cost, as seconds of the robot's and of people's time: config/prices.yaml.
 struct Prices {
   std::map<base::FailureCode, double> of;  ///< [s] per code, >= 0; empty: nothing is priced

@@ -10,6 +10,8 @@ namespace hires::imagination {
 
 inline constexpr int kMostRollouts{100000};  ///< of each alternative that may be asked for
 
+struct CostReasons;  // cost_reasons.h
+
 /// By what alternatives are ordered; a later criterion decides where the earlier ones are equal.
 enum class RankingRule {
   kRisk,   ///< lower bound of success, then mean Eq. 6.1, then mean duration
@@ -23,10 +25,11 @@ std::string ToString(RankingRule rule);
 
 /// What makes one alternative better than another, and good enough to be recommended.
 struct Criteria {
+  /// Without prices; config/imagination_client.yaml, which names them, says kCost.
   RankingRule rule{RankingRule::kRisk};
   /// Share of successes that the lower end of the interval must reach; in (0, 1). Not for kThesis.
   double min_success{0.5};
-  Prices prices;  ///< needed by kCost; else they only fill Evidence::cost
+  Prices prices;  ///< needed by kCost (ReadPrices); else they only fill Evidence::cost
 };
 
 /// Indices of the alternatives, best first. Full equals keep their order, an alternative without
@@ -47,9 +50,12 @@ bool AllFail(const std::vector<Evidence>& alternatives, const Criteria& criteria
 /// One sentence for people with the numbers that decided, also where nothing is recommended; where
 /// nothing is decided, with about how many rollouts would.
 /// @param names  one per alternative, as people call them ("slow").
+/// @param reasons  under kCost (see CostReasonsOf): how sure it is, prices, where the answer turns;
+///                 without them it tells the expected costs alone.
 /// @pre names.size() == alternatives.size(), and as Rank.
 std::string WhyRecommended(const std::vector<Evidence>& alternatives, const Criteria& criteria,
-                           const std::vector<std::string>& names);
+                           const std::vector<std::string>& names,
+                           const CostReasons* reasons = nullptr);
 
 /// About how many rollouts of each alternative would likely take "undecided" away: until the first
 /// one reaches min_success, or all lie below it. None: more than kMostRollouts.

@@ -2,12 +2,14 @@
 
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <set>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "hires/base/action.h"
+#include "hires/imagination/cost_reasons.h"
 #include "hires/imagination/scheduler.h"
 
 namespace hires::imagination {
@@ -30,6 +32,8 @@ struct Report {
   std::vector<Prediction> ranking;  ///< best first
   int recommended{-1};              ///< index into `ranking`, or -1
   std::string why;                  ///< one sentence for people
+  /// The same for machines, where cost recommends; its alternatives are places of `ranking`.
+  std::optional<CostReasons> by_cost;
   std::vector<std::string> caveats;  ///< outside of what was validated; workers that disagreed
   std::uint64_t seed{0};
   double wall_seconds{0.0};

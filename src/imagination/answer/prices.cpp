@@ -12,8 +12,6 @@
 namespace hires::imagination {
 namespace {
 
-constexpr double kHighestPrice = 1e5;  // [s] about a day
-
 std::vector<std::string> WordsThatEndRollouts() {
   std::vector<std::string> words;
   for (const base::FailureInfo& info : base::AllFailures()) {

@@ -63,8 +63,8 @@ RankingRule ParseRankingRule(const std::string& name) {
     if (lower == ToString(rule)) return rule;
   }
   throw base::ConfigError(
-      base::UnknownName("ranking", name, {"risk", "cost", "thesis"}) +
-      "; 'risk' puts success first, 'cost' weighs time and failures in seconds, "
+      base::UnknownName("ranking", name, {"cost", "risk", "thesis"}) +
+      "; 'cost' weighs time and failures in seconds, 'risk' puts success first, "
       "'thesis' ranks as the dissertation does");
 }
 

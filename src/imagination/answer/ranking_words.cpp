@@ -5,6 +5,7 @@
 
 #include "hires/base/check.h"
 #include "hires/base/text.h"
+#include "hires/imagination/cost_reasons.h"
 #include "imagination/answer/ranking_key.h"
 
 namespace hires::imagination {
@@ -121,9 +122,9 @@ std::string Common(const Evidence& best, const std::string& next_name, RankingRu
   return "its action reached its goal like that of " + next_name;
 }
 
-/// Two numbers with as many digits (3 to 15) as it takes to see that they differ.
-std::string Against(double a, double b, const std::string& unit) {
-  for (int digits = 3; digits < 15; ++digits) {
+/// Two numbers with as many digits (at least `digits`, to 15) as it takes to see that they differ.
+std::string Against(double a, double b, const std::string& unit, int digits = 3) {
+  for (; digits < 15; ++digits) {
     const std::string left = fmt::format("{:.{}f}", a, digits);
     const std::string right = fmt::format("{:.{}f}", b, digits);
     if (left != right) return fmt::format("{}{} against {}{}", left, unit, right, unit);
@@ -145,10 +146,33 @@ std::string WhyLater(const Evidence& best, const Evidence& next, const Key& best
   return ", and in nothing worse; it was named first";
 }
 
+/// Rounded down, so that it never promises too much.
+std::string Sureness(const CostComparison& with) {
+  return fmt::format("with probability {:.2f}", std::floor(100.0 * with.probability) / 100.0);
+}
+
+/// The quicker one of two whose failures do not speak against it.
+std::string WhyQuicker(const Evidence& best, const Evidence& next, const CostComparison& with) {
+  if (!with.neither_failed) {
+    return fmt::format(
+        ", and quicker by {:.1f} s, which is more than its failures may cost beyond those of the "
+        "other (at most {:.1f} s), so the quicker one is taken",
+        with.time_saved, std::max(0.0, with.failures_more_upper));
+  }
+  return fmt::format(
+      "; neither failed, so the quicker one is taken, {}; it costs less {}, as a failure may have "
+      "stayed unseen in {} {}",
+      Against(best.cost->mean, next.cost->mean, " s", 1), Sureness(with), best.num_rollouts,
+      Rollouts(best.num_rollouts));
+}
+
 std::string WhyCheaper(const Evidence& best, const Evidence& next, const Key& best_key,
-                       const Key& next_key) {
+                       const Key& next_key, const std::optional<CostComparison>& with) {
   if (std::get<1>(best_key) != std::get<1>(next_key)) {
-    return ", and its expected cost is lower, " + Against(best.cost->mean, next.cost->mean, " s");
+    if (with && with->IsAlike()) return WhyQuicker(best, next, *with);
+    return ", and its expected cost is lower, " +
+           Against(best.cost->mean, next.cost->mean, " s", 1) +
+           (with ? ", " + Sureness(*with) : "");
   }
   if (std::get<2>(best_key) != std::get<2>(next_key)) {
     return fmt::format(
@@ -159,15 +183,15 @@ std::string WhyCheaper(const Evidence& best, const Evidence& next, const Key& be
 }
 
 std::string WhyBetter(const Evidence& best, const Evidence& next, const std::string& next_name,
-                      const Criteria& criteria) {
+                      const Criteria& criteria, const std::optional<CostComparison>& with) {
   const Key best_key = KeyOf(best, criteria);
   const Key next_key = KeyOf(next, criteria);
   if (std::get<0>(best_key) != std::get<0>(next_key)) {
     return WhyFirst(best, next, next_name, criteria.rule);
   }
-  return Common(best, next_name, criteria.rule) + (criteria.rule == RankingRule::kCost
-                                                       ? WhyCheaper(best, next, best_key, next_key)
-                                                       : WhyLater(best, next, best_key, next_key));
+  return Common(best, next_name, criteria.rule) +
+         (criteria.rule == RankingRule::kCost ? WhyCheaper(best, next, best_key, next_key, with)
+                                              : WhyLater(best, next, best_key, next_key));
 }
 
 constexpr double kNoticeable = 0.1;  // [s]
@@ -199,10 +223,18 @@ std::string WhatSpeaksAgainst(const std::vector<Evidence>& alternatives, const E
       names[rival - alternatives.data()], best.duration.mean - rival->duration.mean);
 }
 
+/// What the failures that were weighed cost, and where the answer would turn.
+std::string WhatPricesSay(const CostReasons* reasons, const std::vector<std::string>& names) {
+  if (!reasons) return "";
+  const std::string prices = PriceSentence(*reasons);
+  return (prices.empty() ? "" : "; " + prices) +
+         (reasons->turning ? "; " + TurningSentence(*reasons->turning, names) : "");
+}
+
 }  // namespace
 
 std::string WhyRecommended(const std::vector<Evidence>& alternatives, const Criteria& criteria,
-                           const std::vector<std::string>& names) {
+                           const std::vector<std::string>& names, const CostReasons* reasons) {
   HIRES_CHECK(names.size() == alternatives.size(), "each alternative needs one name");
   const std::optional<int> best = Recommended(alternatives, criteria);
   if (!best) return WhyNone(alternatives, criteria, names);
@@ -211,9 +243,11 @@ std::string WhyRecommended(const std::vector<Evidence>& alternatives, const Crit
     return fmt::format("{}: the only alternative; {}", names[*best], SuccessText(winner));
   }
   const int next = Rank(alternatives, criteria)[1];
-  return fmt::format("{}: {}{}", names[*best],
-                     WhyBetter(winner, alternatives[next], names[next], criteria),
-                     WhatSpeaksAgainst(alternatives, winner, criteria, names));
+  return fmt::format(
+      "{}: {}{}", names[*best],
+      WhyBetter(winner, alternatives[next], names[next], criteria,
+                reasons ? reasons->next : std::nullopt),
+      WhatSpeaksAgainst(alternatives, winner, criteria, names) + WhatPricesSay(reasons, names));
 }
 
 }  // namespace hires::imagination

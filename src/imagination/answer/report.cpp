@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <set>
 
 #include "hires/base/check.h"
@@ -23,6 +24,24 @@ std::string WhyNothing(const Scheduler& scheduler, ImaginationOutcome outcome) {
     default:
       return suffix;
   }
+}
+
+std::vector<const std::vector<RolloutResult>*> PrefixesOf(const Scheduler& scheduler,
+                                                          std::size_t num_alternatives) {
+  std::vector<const std::vector<RolloutResult>*> prefixes;
+  for (std::size_t i = 0; i < num_alternatives; ++i) {
+    prefixes.push_back(&scheduler.Prefix(static_cast<int>(i)));
+  }
+  return prefixes;
+}
+
+/// From indices of alternatives to places of the order.
+void CallByPlace(const std::vector<int>& order, CostReasons* reasons) {
+  const auto place = [&](int alternative) {
+    return static_cast<int>(std::find(order.begin(), order.end(), alternative) - order.begin());
+  };
+  if (reasons->next) reasons->next->other = place(reasons->next->other);
+  if (reasons->turning) reasons->turning->other = place(reasons->turning->other);
 }
 
 std::vector<std::string> NamesOf(const std::vector<base::ActionCall>& actions) {
@@ -103,10 +122,15 @@ Report MakeReport(const Scheduler& scheduler, const std::vector<base::ActionCall
   for (std::size_t place = 0; place < ranking.order.size(); ++place) {
     if (ranking.recommended == ranking.order[place]) report.recommended = static_cast<int>(place);
   }
-  report.why =
-      ranking.num_rollouts == 0
-          ? WhyNothing(scheduler, result.outcome)
-          : WhyRecommended(ranking.evidence, scheduler.params().criteria, NamesOf(actions));
+  if (ranking.num_rollouts == 0) {
+    report.why = WhyNothing(scheduler, result.outcome);
+    return report;
+  }
+  const Criteria& criteria = scheduler.params().criteria;
+  report.by_cost = CostReasonsOf(PrefixesOf(scheduler, actions.size()), ranking.evidence, criteria);
+  report.why = WhyRecommended(ranking.evidence, criteria, NamesOf(actions),
+                              report.by_cost ? &*report.by_cost : nullptr);
+  if (report.by_cost) CallByPlace(ranking.order, &*report.by_cost);
   return report;
 }
 

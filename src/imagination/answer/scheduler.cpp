@@ -48,7 +48,9 @@ void CheckParams(const SchedulerParams& params) {
   CheckField("batch", params.batch, 1, kLargestBatch);
   CheckField("max_attempts", params.max_attempts, 1, kMostAttempts);
   if (params.criteria.rule == RankingRule::kCost && params.criteria.prices.empty()) {
-    throw base::ConfigError("scheduler: ranking is cost, which needs prices; name a file of them");
+    throw base::ConfigError(
+        "scheduler: ranking is cost, which needs prices; read them from config/prices.yaml "
+        "(ReadPrices; ReadClientConfig does), or rank by risk");
   }
   CheckField("min_success", params.criteria.min_success, kLeastSuccess, kMostSuccess);
   CheckField("alpha", params.settle.alpha, kSmallestShare, 1.0 - kSmallestShare);
@@ -63,7 +65,7 @@ SchedulerParams ReadSchedulerParams(base::ParamReader in) {
   params.worker_wait = in.Get("worker_wait", base::Between(0.0, kLongestWait));
   params.early_stop = in.GetBool("early_stop");
   params.criteria.rule =
-      ParseRankingRule(in.Get("ranking", base::OneOf({"risk", "cost", "thesis"})));
+      ParseRankingRule(in.Get("ranking", base::OneOf({"cost", "risk", "thesis"})));
   params.criteria.min_success = in.Get("min_success", base::Between(kLeastSuccess, kMostSuccess));
   params.first_look = in.Get("first_look", base::Between(1, kMostRollouts));
   params.batch = in.Get("batch", base::Between(1, kLargestBatch));

@@ -156,6 +156,7 @@ std::vector<std::string> DifferencesOf(const ImagineResult& then, const ImagineR
   }
   out.Compare("recommended", then.recommended, now.recommended);
   out.Compare("why", then.why, now.why);
+  out.CompareWhole("by_cost", then.by_cost, now.by_cost);
   out.CompareWhole("caveats", then.caveats, now.caveats);
   out.CompareWhole("depends_on", then.depends_on, now.depends_on);
   out.Compare("seed", then.seed, now.seed);

@@ -59,6 +59,37 @@ ordered_json RankedToJson(const imagination::Prediction& prediction) {
           {"median_rollout", IndexToJson(e.median_rollout)}};
 }
 
+ordered_json NextToJson(const std::optional<imagination::CostComparison>& next) {
+  if (!next) return nullptr;
+  return {{"place", next->other},
+          {"time_saved", next->time_saved},
+          {"failures_more", next->failures_more},
+          {"failures_more_upper", next->failures_more_upper},
+          {"neither_failed", next->neither_failed},
+          {"alike", next->IsAlike()},
+          {"probability", next->probability}};
+}
+
+ordered_json TurningToJson(const std::optional<imagination::TurningPrice>& turning) {
+  if (!turning) return nullptr;
+  return {{"failure", base::ToString(turning->code)},
+          {"price", turning->price},
+          {"when", turning->is_below ? "less" : "more"},
+          {"place", turning->other}};
+}
+
+/// null where the recommendation is none by cost.
+ordered_json ByCostToJson(const std::optional<imagination::CostReasons>& by_cost) {
+  if (!by_cost) return nullptr;
+  ordered_json prices = ordered_json::array();
+  for (const auto& [code, price] : by_cost->prices) {
+    prices.push_back({{"failure", base::ToString(code)}, {"price", price}});
+  }
+  return {{"prices", prices},
+          {"next", NextToJson(by_cost->next)},
+          {"turns", TurningToJson(by_cost->turning)}};
+}
+
 /// @pre it is no folder.
 std::string WhyNoFolder(const fs::path& folder) {
   return fs::exists(folder) ? fmt::format("'{}' is a file; wanted a folder", folder.string())
@@ -111,6 +142,7 @@ nlohmann::ordered_json ToJson(const imagination::Report& report) {
       {"outcome", OutcomeName(report)},
       {"recommended", report.recommended < 0 ? ordered_json() : ordered_json(report.recommended)},
       {"why", report.why},
+      {"by_cost", ByCostToJson(report.by_cost)},
       {"caveats", report.caveats},
       {"ranking", ranking},
       {"seed", report.seed},

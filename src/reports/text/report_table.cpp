@@ -100,12 +100,13 @@ std::string FormatTable(const std::vector<std::vector<std::string>>& rows) {
 }
 
 std::string RankingTable(const std::vector<imagination::Prediction>& ranking, int recommended,
-                         bool with_cost) {
+                         bool with_cost, const std::string& prices) {
   std::vector<std::vector<std::string>> rows{Heads(with_cost)};
   for (std::size_t i = 0; i < ranking.size(); ++i) {
     rows.push_back(Row(ranking[i], static_cast<int>(i) == recommended, with_cost));
   }
-  return FormatTable(rows) + KindLine(ranking);
+  const std::string price_line = prices.empty() ? "" : "cost: seconds; " + prices + '\n';
+  return FormatTable(rows) + KindLine(ranking) + price_line;
 }
 
 std::string ProgressLine(const imagination::Progress& progress, int width) {

@@ -13,8 +13,9 @@ std::string FormatTable(const std::vector<std::vector<std::string>>& rows);
 /// The ranking as a table for people, the recommended line marked, and below it in words what kind
 /// of intervals it shows.
 /// @param with_cost  a column of expected costs where they are known.
+/// @param prices  what failures cost, as PriceSentence says it, for a line below; or empty.
 std::string RankingTable(const std::vector<imagination::Prediction>& ranking, int recommended,
-                         bool with_cost = false);
+                         bool with_cost = false, const std::string& prices = "");
 
 /// "[#####.....]  52 %  33 of 64 rollouts, 4 s left" in at most `width` characters.
 std::string ProgressLine(const imagination::Progress& progress, int width = 78);

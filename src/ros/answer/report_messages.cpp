@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -239,12 +240,56 @@ hires::imagination::Prediction FromMsg(const msg::Prediction& prediction) {
   return out;
 }
 
+msg::CostReasons ToMsg(const hires::imagination::CostReasons& reasons) {
+  msg::CostReasons out;
+  for (const auto& [code, price] : reasons.prices) {
+    out.failures.push_back(static_cast<std::uint16_t>(code));
+    out.prices.push_back(price);
+  }
+  const auto next = reasons.next.value_or(hires::imagination::CostComparison());
+  out.next = next.other;
+  out.time_saved = next.time_saved;
+  out.failures_more = next.failures_more;
+  out.failures_more_upper = next.failures_more_upper;
+  out.neither_failed = next.neither_failed;
+  out.probability = next.probability;
+  const auto turning = reasons.turning.value_or(hires::imagination::TurningPrice());
+  out.turning_failure = static_cast<std::uint16_t>(turning.code);
+  out.turning_price = turning.price;
+  out.turns_below = turning.is_below;
+  out.turning_place = turning.other;
+  return out;
+}
+
+hires::imagination::CostReasons FromMsg(const msg::CostReasons& reasons) {
+  hires::imagination::CostReasons out;
+  for (std::size_t i = 0; i < std::min(reasons.failures.size(), reasons.prices.size()); ++i) {
+    const auto code = hires::base::FailureCodeOf(reasons.failures[i]);
+    if (code) out.prices[*code] = reasons.prices[i];
+  }
+  if (reasons.next >= 0) {
+    out.next = hires::imagination::CostComparison{reasons.next,
+                                                  reasons.time_saved,
+                                                  reasons.failures_more,
+                                                  reasons.failures_more_upper,
+                                                  reasons.neither_failed != 0,
+                                                  reasons.probability};
+  }
+  const auto turning = hires::base::FailureCodeOf(reasons.turning_failure);
+  if (turning && *turning != hires::base::FailureCode::kNone) {
+    out.turning = hires::imagination::TurningPrice{*turning, reasons.turning_price,
+                                                   reasons.turns_below != 0, reasons.turning_place};
+  }
+  return out;
+}
+
 msg::ImagineResult ToMsg(const hires::imagination::Report& report) {
   msg::ImagineResult out;
   out.outcome = OutcomeCode(report);
   for (const auto& prediction : report.ranking) out.predictions.push_back(ToMsg(prediction));
   out.recommended = report.recommended;
   out.why = report.why;
+  if (report.by_cost) out.by_cost.push_back(ToMsg(*report.by_cost));
   out.caveats = report.caveats;
   out.seed = report.seed;
   out.wall_seconds = report.wall_seconds;
@@ -263,6 +308,7 @@ hires::imagination::Report FromMsg(const msg::ImagineResult& result) {
   for (const auto& prediction : result.predictions) out.ranking.push_back(FromMsg(prediction));
   out.recommended = result.recommended;
   out.why = result.why;
+  if (!result.by_cost.empty()) out.by_cost = FromMsg(result.by_cost.front());
   out.caveats = result.caveats;
   out.seed = result.seed;
   out.wall_seconds = result.wall_seconds;

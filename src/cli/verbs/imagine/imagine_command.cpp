@@ -44,7 +44,7 @@ void AddOptions(CLI::App* app, ImagineOptions* o) {
       ->check(WholeNumber());
   app->add_option("--deadline", o->deadline, "[s] after which the best answer so far is taken")
       ->check(NumberBetween(0.0, 1e6));
-  app->add_option("--ranking", o->ranking, "risk, cost or thesis");
+  app->add_option("--ranking", o->ranking, "cost, risk or thesis; default: as --config says");
   app->add_option("--min-success", o->min_success,
                   "share of successes that the lower end of the interval must reach")
       ->check(NumberBetween(0.001, 0.999));
@@ -191,7 +191,9 @@ void PrintBlockedGoals(const std::vector<imagination::Prediction>& ranking) {
 void PrintReport(const imagination::Report& report, imagination::RankingRule rule) {
   if (!report.ranking.empty()) {
     const bool with_cost = rule == imagination::RankingRule::kCost;
-    std::cout << reports::RankingTable(report.ranking, report.recommended, with_cost) << '\n';
+    const std::string prices = report.by_cost ? imagination::PriceSentence(*report.by_cost) : "";
+    std::cout << reports::RankingTable(report.ranking, report.recommended, with_cost, prices)
+              << '\n';
   }
   std::cout << fmt::format("{}: {}\n", reports::OutcomeName(report), report.why);
   PrintBlockedGoals(report.ranking);
