@@ -10,6 +10,7 @@
 #include "cli/verbs/achieve/achieve_command.h"
 #include "cli/verbs/blackboard/blackboard_command.h"
 #include "cli/verbs/list/list_command.h"
+#include "cli/verbs/list/list_tasks.h"
 #include "cli/verbs/localise/localise_command.h"
 #include "cli/verbs/map/map_command.h"
 #include "cli/verbs/plan/plan_command.h"
@@ -27,7 +28,7 @@ int ListTasks(const AchieveOptions& achieve, const Backends& backends) {
   list.domain = achieve.files.domain;
   const bool may_ask = list.domain.empty() && !achieve.is_local && backends.domain_of_monitor;
   if (may_ask) list.domain = backends.domain_of_monitor();
-  return RunListVerb(list, backends.package_folder);
+  return RunListVerb(list, backends.package_folder, TasksOf);
 }
 
 int Achieve(const AchieveOptions& achieve, const Backends& backends) {
@@ -51,7 +52,7 @@ std::vector<ProgramVerb> VerbsOf(CLI::App* app, const std::vector<std::string>& 
   table.Add<BlackboardOptions>(AddBlackboardVerb, nullptr, [&](const BlackboardOptions& options) {
     return RunBlackboardVerb(options, folder, backends.connect_blackboard);
   });
-  AddList(&table);
+  AddList(TasksOf, &table);
   table.Add<RecogniseOptions>(
       AddRecogniseVerb, nullptr,
       [&](const RecogniseOptions& options) { return RunRecogniseVerb(options, folder); },

@@ -3,7 +3,6 @@
 #include "cli/program.h"
 #include "cli/verbs/imagine/imagine_command.h"
 #include "cli/verbs/limits/limits_command.h"
-#include "cli/verbs/list/list_command.h"
 
 namespace hires::cli {
 namespace {
@@ -28,11 +27,14 @@ void AddLimits(VerbTable* table) {
                             });
 }
 
-void AddList(VerbTable* table) {
+void AddList(const TaskLister& tasks, VerbTable* table) {
   table->Add<ListOptions>(
-      AddListVerb, nullptr,
-      [folder = table->package_folder()](const ListOptions& options) {
-        return RunListVerb(options, folder);
+      [with_tasks = bool(tasks)](CLI::App* app, ListOptions* options) {
+        AddListVerb(app, with_tasks, options);
+      },
+      nullptr,
+      [folder = table->package_folder(), tasks](const ListOptions& options) {
+        return RunListVerb(options, folder, tasks);
       },
       OnSignal::kEnd);
 }
@@ -50,7 +52,7 @@ int RunLocalCommandLine(const std::vector<std::string>& arguments,
     VerbTable table(app, {CommandOf(kLocalProgram, arguments), package_folder});
     AddImagine({}, &table);
     AddLimits(&table);
-    AddList(&table);
+    AddList(nullptr, &table);
     AddDoctor({package_folder, {}, {}}, &table);
     return table.Take();
   };

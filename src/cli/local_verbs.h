@@ -3,6 +3,7 @@
 #include "cli/verb_table.h"
 #include "cli/verbs/doctor/doctor.h"
 #include "cli/verbs/imagine/imagine_query.h"
+#include "cli/verbs/list/list_command.h"
 
 // Verbs that need no Blackboard, no planner of tasks and no node; so a small program has them,
 // which is built long before `hires` is.
@@ -10,7 +11,8 @@ namespace hires::cli {
 
 void AddImagine(const ImagineBackends& backends, VerbTable* table);
 void AddLimits(VerbTable* table);
-void AddList(VerbTable* table);
+/// @param tasks  none: this program does not plan, and lists no tasks.
+void AddList(const TaskLister& tasks, VerbTable* table);
 void AddDoctor(const DoctorBackends& backends, VerbTable* table);
 
 /// The program `hires_local`, which has these verbs alone and asks nobody. Never throws.

@@ -32,7 +32,8 @@ class VerbTable {
 
   /// @param report  finds the ReportOptions among the options; null where there are none.
   template <typename Options>
-  void Add(void (*add)(CLI::App*, Options*), const std::function<ReportOptions*(Options*)>& report,
+  void Add(const std::function<void(CLI::App*, Options*)>& add,
+           const std::function<ReportOptions*(Options*)>& report,
            const std::function<int(const Options&)>& run, OnSignal on_signal = OnSignal::kAsk) {
     const auto options = std::make_shared<Options>();
     if (report) SetCall(report(options.get()));

@@ -73,6 +73,14 @@ TEST(LocalVerbsTest, ImaginesTheSameAsTheWholeProgram) {
   EXPECT_EQ(a, b);
 }
 
+TEST(LocalVerbsTest, ListsNoTasks) {
+  const Ended ended = RunLocal({"list", "tasks"});
+  EXPECT_EQ(ended.code, 1);
+  EXPECT_THAT(ended.err, HasSubstr("'hires list tasks' does"));
+  EXPECT_THAT(RunLocal({"list"}).err, Not(HasSubstr("'tasks'")));
+  EXPECT_EQ(RunLocal({"list", "areas"}).code, 0);
+}
+
 TEST(LocalVerbsTest, AsksNobody) {
   const Ended ended = RunLocal({"imagine", "--action", "move_base", "--from", "home"});
   EXPECT_EQ(ended.code, 1);

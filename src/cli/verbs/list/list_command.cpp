@@ -9,7 +9,6 @@
 #include <functional>
 #include <map>
 #include <nlohmann/json.hpp>
-#include <set>
 
 #include "cli/exit_code.h"
 #include "cli/list_rows.h"
@@ -17,7 +16,6 @@
 #include "hires/base/param_reader.h"
 #include "hires/base/text.h"
 #include "hires/imagination/client_config.h"
-#include "hires/planning/planning_files.h"
 #include "hires/robot/load_robot.h"
 #include "hires/skills/action_loader.h"
 #include "hires/translation/areas.h"
@@ -36,7 +34,7 @@ using Rows = ListRows;
 /// The files that are listed.
 struct Sources {
   imagination::SetupConfig setup;
-  std::string domain, package_folder;
+  std::string package_folder;
 };
 
 double Rounded(double value) { return std::round(value * 1e4) / 1e4; }
@@ -255,60 +253,14 @@ Rows Truths(const Sources& sources) {
   return rows;
 }
 
-void NoteTasks(const planning::TaskNetwork& network, std::set<std::string>* names) {
-  for (const planning::TaskItem& item : network.items) {
-    if (item.network.empty()) names->insert(std::string(item.task.Head()));
-    for (const planning::TaskNetwork& inner : item.network) NoteTasks(inner, names);
-  }
-}
-
-std::string ArgumentsOf(const planning::Datum& head) {
-  std::vector<std::string> arguments;
-  for (std::size_t i = 1; i < head.items.size(); ++i) {
-    arguments.push_back(planning::ToString(head.items[i]));
-  }
-  return base::Join(arguments, " ");
-}
-
-/// Tasks with a method; whole ones, of which no other consists, first.
-Rows Tasks(const Sources& sources) {
-  const planning::Domain domain = planning::LoadDomain(sources.domain);
-  std::map<std::string, std::set<std::string>> parents;
-  for (const planning::Method& method : domain.methods) {
-    std::set<std::string> parts;
-    for (const planning::Branch& branch : method.branches) NoteTasks(branch.subtasks, &parts);
-    const std::string name(method.head.Head());
-    for (const std::string& part : parts) {
-      if (part != name) parents[part].insert(name);
-    }
-  }
-  Rows rows;
-  std::set<std::string> seen;
-  for (const planning::Method& method : domain.methods) {
-    const std::string name(method.head.Head());
-    if (!seen.insert(name).second) continue;
-    rows.push_back(
-        {{"task", name}, {"arguments", ArgumentsOf(method.head)}, {"part of", parents[name]}});
-  }
-  std::stable_partition(rows.begin(), rows.end(),
-                        [](const ordered_json& row) { return row["part of"].empty(); });
-  return rows;
-}
-
 const std::map<std::string, std::function<Rows(const Sources&)>>& Listers() {
   static const std::map<std::string, std::function<Rows(const Sources&)>> listers{
       {"areas", Areas},       {"objects", Objects},
       {"actions", Actions},   {"motion_sets", MotionSets},
       {"postures", Postures}, {"robots", Robots},
       {"worlds", Worlds},     {"scenarios", Scenarios},
-      {"tasks", Tasks},       {"truths", Truths}};
+      {"truths", Truths}};
   return listers;
-}
-
-std::vector<std::string> Kinds() {
-  std::vector<std::string> kinds;
-  for (const auto& [kind, lister] : Listers()) kinds.push_back(kind);
-  return kinds;
 }
 
 Sources SourcesOf(const ListOptions& o, const std::string& package_folder) {
@@ -319,16 +271,41 @@ Sources SourcesOf(const ListOptions& o, const std::string& package_folder) {
   sources.setup = imagination::ReadSetupConfig(o.scene.empty() ? client.scene : o.scene);
   imagination::OverridePaths(o.world, o.robot, o.objects, "", &sources.setup);
   sources.setup.action_libraries = o.action_libraries;
-  sources.domain = o.domain.empty() ? package_folder + "/config/domains/restaurant.lisp" : o.domain;
   return sources;
+}
+
+constexpr char kTasks[] = "tasks";
+
+std::vector<std::string> Kinds(bool with_tasks) {
+  std::vector<std::string> kinds;
+  for (const auto& [kind, lister] : Listers()) kinds.push_back(kind);
+  if (with_tasks) kinds.push_back(kTasks);
+  std::sort(kinds.begin(), kinds.end());
+  return kinds;
+}
+
+/// @throws base::ConfigError naming what can be listed.
+Rows ListRowsOf(const ListOptions& options, const std::string& package_folder,
+                const TaskLister& tasks) {
+  if (options.what == kTasks) {
+    if (!tasks)
+      throw base::ConfigError("list: this program plans nothing; 'hires list tasks' does");
+    return tasks(options.domain.empty() ? package_folder + "/config/domains/restaurant.lisp"
+                                        : options.domain);
+  }
+  const auto lister = Listers().find(options.what);
+  if (lister == Listers().end()) {
+    throw base::ConfigError(base::UnknownName("list", options.what, Kinds(bool(tasks))));
+  }
+  return lister->second(SourcesOf(options, package_folder));
 }
 
 }  // namespace
 
-void AddListVerb(CLI::App* app, ListOptions* o) {
-  CLI::App* verb =
-      app->add_subcommand("list", "names that other verbs take: " + base::Join(Kinds(), ", "));
-  verb->add_option("what", o->what, base::Join(Kinds(), ", "));
+void AddListVerb(CLI::App* app, bool with_tasks, ListOptions* o) {
+  const std::string kinds = base::Join(Kinds(with_tasks), ", ");
+  CLI::App* verb = app->add_subcommand("list", "names that other verbs take: " + kinds);
+  verb->add_option("what", o->what, kinds);
   verb->add_option("--world", o->world, "another SDF world: its areas and objects");
   verb->add_option("--robot", o->robot,
                    "another robot, profile (.yaml) or URDF: its tray, motion sets and postures");
@@ -336,23 +313,22 @@ void AddListVerb(CLI::App* app, ListOptions* o) {
   verb->add_option("--scene", o->scene, "another scene file instead of config/scene.yaml");
   verb->add_option("--actions", o->action_libraries, "library with more actions (.so)")
       ->allow_extra_args(false);
-  verb->add_option("--domain", o->domain,
-                   "another planning domain: its tasks; default: the restaurant's");
+  if (with_tasks) {
+    verb->add_option("--domain", o->domain,
+                     "another planning domain: its tasks; default: the restaurant's");
+  }
   verb->add_option("--json", o->json, "write the list to this file as well; - : print it instead");
   o->verb = verb;
 }
 
-int RunListVerb(const ListOptions& options, const std::string& package_folder) {
+int RunListVerb(const ListOptions& options, const std::string& package_folder,
+                const TaskLister& tasks) {
   if (options.what.empty()) {
-    throw base::ConfigError(
-        fmt::format("list: nothing came, wanted one of '{}'", base::Join(Kinds(), "', '")));
-  }
-  const auto lister = Listers().find(options.what);
-  if (lister == Listers().end()) {
-    throw base::ConfigError(base::UnknownName("list", options.what, Kinds()));
+    throw base::ConfigError(fmt::format("list: nothing came, wanted one of '{}'",
+                                        base::Join(Kinds(bool(tasks)), "', '")));
   }
   if (!options.json.empty() && options.json != "-") reports::RequireFolderOf(options.json);
-  PrintList(options.what, lister->second(SourcesOf(options, package_folder)), options.json);
+  PrintList(options.what, ListRowsOf(options, package_folder, tasks), options.json);
   return kExitRecommended;
 }
 

@@ -1,7 +1,10 @@
 #pragma once
 
+#include <functional>
 #include <string>
 #include <vector>
+
+#include "cli/list_rows.h"
 
 namespace CLI {
 class App;
@@ -16,11 +19,15 @@ struct ListOptions {
   CLI::App* verb{nullptr};
 };
 
+/// The tasks of a planning domain; none where a program does not plan.
+using TaskLister = std::function<ListRows(const std::string& domain)>;
+
 /// Adds the verb to the program.  @pre `options` outlives `app`.
-void AddListVerb(CLI::App* app, ListOptions* options);
+void AddListVerb(CLI::App* app, bool with_tasks, ListOptions* options);
 
 /// Prints names that other verbs take, from the files that these would read.
 /// @return kExitRecommended.  @throws base::ConfigError for bad input.
-int RunListVerb(const ListOptions& options, const std::string& package_folder);
+int RunListVerb(const ListOptions& options, const std::string& package_folder,
+                const TaskLister& tasks);
 
 }  // namespace hires::cli
