@@ -128,11 +128,12 @@ TEST(CompareCostsTest, TheProbabilityIsThatOfDrawnShares) {  // the other road t
 TEST(CostSentenceTest, OfTwoThatNeverFailedTheQuickerOneIsTaken) {
   const Answered answered =
       Ask({Times(64, Success(10.2, 12)), Times(64, Success(22.4))}, ByCost(600.0));
-  EXPECT_EQ(answered.why,
-            "fast: 64 of 64 rollouts succeeded (at least 94 %), good enough like slow; neither "
-            "failed, so the quicker one is taken, 10.2 s against 22.4 s; it costs less with "
-            "probability 0.93, as a failure may have stayed unseen in 64 rollouts");
-  EXPECT_TRUE(answered.reasons->prices.empty());
+  EXPECT_EQ(
+      answered.why,
+      "fast: 64 of 64 rollouts succeeded (at least 94 %), good enough like slow; neither "
+      "failed, so the quicker one is taken, 10.2 s against 22.4 s; it costs less with "
+      "probability 0.93, as a failure may have stayed unseen in 64 rollouts; a fall costs 600 s");
+  EXPECT_EQ(answered.reasons->prices.at(base::FailureCode::kObjectFell), 600.0);
   EXPECT_FALSE(answered.reasons->turning);
 }
 

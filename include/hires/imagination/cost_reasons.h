@@ -50,7 +50,8 @@ std::optional<TurningPrice> TurningPriceOf(const std::vector<Evidence>& alternat
 
 /// What stands behind a recommendation by cost.
 struct CostReasons {
-  /// Of failures that occurred in alternatives that are good enough: those that were weighed.
+  /// Of failures that occurred in alternatives that are good enough: those that were weighed; of
+  /// a fall where none did, but more than one is good enough.
   std::map<base::FailureCode, double> prices;
   std::optional<CostComparison> next;  ///< with the next one of the order, if it is good enough
   std::optional<TurningPrice> turning;
@@ -62,7 +63,7 @@ std::optional<CostReasons> CostReasonsOf(
     const std::vector<const std::vector<RolloutResult>*>& results,
     const std::vector<Evidence>& alternatives, const Criteria& criteria);
 
-/// "a fall costs 600 s, no_path costs 60 s"; empty where nothing failed.
+/// "a fall costs 600 s, no_path costs 60 s".
 std::string PriceSentence(const CostReasons& reasons);
 
 /// "slow would be taken if a fall cost less than 85 s".

@@ -158,6 +158,10 @@ std::optional<CostReasons> CostReasonsOf(
     reasons.next = CompareCosts(*results[*best], *results[next], alternatives[*best].num_rollouts,
                                 criteria.prices);
     reasons.next->other = next;
+    // Where nothing failed it is a fall that may have stayed unseen.
+    if (reasons.prices.empty()) {
+      reasons.prices[FailureCode::kObjectFell] = PriceOf(FailureCode::kObjectFell, criteria.prices);
+    }
   }
   reasons.turning = TurningPriceOf(alternatives, criteria, *best);
   return reasons;
