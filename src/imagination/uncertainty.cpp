@@ -78,6 +78,8 @@ const std::vector<Quantity>& Quantities() {
       {"late_cycle_delay", "s", 0, 5, [](Variation& v) -> double& { return v.late_cycle_delay; }},
       {"loop_damping", "factor", 0.1, 10,
        [](Variation& v) -> double& { return v.loop_damping_factor; }},
+      {"wheel_damping", "factor", 0, 10,
+       [](Variation& v) -> double& { return v.wheel_damping_factor; }},
       {"sway", "factor", 0, 10, [](Variation& v) -> double& { return v.sway_factor; }},
       {"detection_noise", "m", 0, 0.2, [](Variation& v) -> double& { return v.detection_noise; }},
       {"detection_noise_yaw", "rad", 0, 1,

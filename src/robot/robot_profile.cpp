@@ -59,6 +59,39 @@ void ReadDrive(ParamReader* in, BaseControllerParams* params) {
   }
 }
 
+CasterParams ReadCasters(ParamReader in) {
+  CasterParams params;
+  params.version = in.Get("version", Between(1, 2));
+  params.at = in.Get("at", Between(0.01, 10.0));
+  params.track = in.Get("track", Between(0.001, 10.0));
+  params.wheel_radius = in.Get("wheel_radius", Between(0.005, 1.0));
+  params.wheel_inertia = in.Get("wheel_inertia", Between(0.0, 100.0));
+  params.wheel_effort = in.Get("wheel_effort", Between(0.01, 1e4));
+  params.wheel_damping = in.Get("wheel_damping", Between(0.0, 100.0));
+  params.steering_inertia = in.Get("steering_inertia", Between(0.001, 100.0));
+  params.steering_effort = in.Get("steering_effort", Between(0.01, 1e4));
+  params.steering_speed = in.Get("steering_speed", Between(0.1, 1e3));
+  params.steering_damping = in.Get("steering_damping", Between(0.0, 100.0));
+  params.mass = in.Get("mass", Between(0.1, 1e5));
+  params.yaw_inertia = in.Get("yaw_inertia", Between(0.001, 1e5));
+  params.grip = in.Get("grip", Between(0.01, 100.0));
+  return params;
+}
+
+/// Casters have a controller of their own, so keys of the simpler velocity loop would go unheard.
+void RefuseLoopBesideCasters(const ParamReader& in, const BaseControllerParams& params) {
+  for (const char* key : {"loop_frequency", "loop_damping", "max_linear_jerk"}) {
+    if (!in.Has(key)) continue;
+    in.Fail(key,
+            "wanted none beside `casters`, whose published controller knows none; leave it out");
+  }
+  if (params.drive != Drive::kOmnidirectional) {
+    in.Fail("casters", fmt::format("wanted none where the drive is {}: four steered casters drive "
+                                   "sideways, too; leave them out, or write `drive: {}`",
+                                   ToString(params.drive), ToString(Drive::kOmnidirectional)));
+  }
+}
+
 /// @param params  what holds where the file says nothing.
 BaseControllerParams ReadBaseController(BaseControllerParams params, ParamReader in) {
   if (in.Has("drive")) ReadDrive(&in, &params);
@@ -80,6 +113,10 @@ BaseControllerParams ReadBaseController(BaseControllerParams params, ParamReader
   read("sway_compliance", Between(0.0, 0.1), &params.sway_compliance);
   read("sway_frequency", Between(0.1, 200.0), &params.sway_frequency);
   read("sway_damping", Between(0.0, 10.0), &params.sway_damping);
+  if (in.Has("casters")) {
+    params.casters = ReadCasters(in.Sub("casters"));
+    RefuseLoopBesideCasters(in, params);
+  }
   return params;
 }
 
@@ -227,6 +264,17 @@ void AddTo(base::Hasher* hash, const MotionSet& set) {
   hash->Add(set.max_angular_acceleration);
 }
 
+void AddTo(base::Hasher* hash, const CasterParams& params) {
+  hash->Add("casters");
+  hash->Add(static_cast<std::uint64_t>(params.version));
+  for (const double value : {params.at, params.track, params.wheel_radius, params.wheel_inertia,
+                             params.wheel_effort, params.wheel_damping, params.steering_inertia,
+                             params.steering_effort, params.steering_speed, params.steering_damping,
+                             params.mass, params.yaw_inertia, params.grip}) {
+    hash->Add(value);
+  }
+}
+
 void AddTo(base::Hasher* hash, const BaseControllerParams& params) {
   AddTo(hash, params.limits);
   for (const double value :
@@ -238,6 +286,7 @@ void AddTo(base::Hasher* hash, const BaseControllerParams& params) {
   if (params.stops_at_timeout) hash->Add("stops_at_timeout");
   if (params.drive != Drive::kOmnidirectional) hash->Add(ToString(params.drive));
   if (params.drive == Drive::kCarLike) hash->Add(params.min_turning_radius);
+  if (params.casters) AddTo(hash, *params.casters);
 }
 
 std::uint64_t HashOf(const RobotProfile& profile) {

@@ -18,6 +18,23 @@ struct ControllerNumber {
   double BaseControllerParams::*slot;
 };
 
+/// Of a base on casters; others have none to change.
+struct CasterNumber {
+  std::string key;
+  double lower, upper;
+  double robot::CasterParams::*slot;
+};
+
+const std::vector<CasterNumber>& CasterNumbers() {
+  static const std::vector<CasterNumber> numbers{
+      {"wheel_effort", 0.01, 1e4, &robot::CasterParams::wheel_effort},
+      {"wheel_damping", 0.0, 100.0, &robot::CasterParams::wheel_damping},
+      {"steering_effort", 0.01, 1e4, &robot::CasterParams::steering_effort},
+      {"grip", 0.01, 100.0, &robot::CasterParams::grip},
+  };
+  return numbers;
+}
+
 const std::vector<ControllerNumber>& ControllerNumbers() {
   static const std::vector<ControllerNumber> numbers{
       {"command_timeout", 0.001, 60.0, &BaseControllerParams::command_timeout},
@@ -32,10 +49,14 @@ const std::vector<ControllerNumber>& ControllerNumbers() {
   return numbers;
 }
 
-const ControllerNumber& ControllerNumberOf(const base::ParamReader& in, const std::string& key) {
+base::Bound<double> BoundOf(const base::ParamReader& in, const std::string& key) {
   std::vector<std::string> names{kAtTimeout};
   for (const ControllerNumber& number : ControllerNumbers()) {
-    if (number.key == key) return number;
+    if (number.key == key) return base::Between(number.lower, number.upper);
+    names.push_back(number.key);
+  }
+  for (const CasterNumber& number : CasterNumbers()) {
+    if (number.key == key) return base::Between(number.lower, number.upper);
     names.push_back(number.key);
   }
   in.Fail(key, base::UnknownName("number of a base controller", key, names));
@@ -51,17 +72,20 @@ void ReadControllerChanges(base::ParamReader in, Truth* truth) {
       truth->stops_at_timeout = entry.Get("value", base::OneOf({"ramp", "stop"})) == "stop";
       continue;
     }
-    const ControllerNumber& number = ControllerNumberOf(in, key);
-    truth->controller[key] = entry.Get("value", base::Between(number.lower, number.upper));
+    truth->controller[key] = entry.Get("value", BoundOf(in, key));
   }
 }
 
 void ChangeController(const Truth& truth, BaseControllerParams* params) {
   params->stops_at_timeout = truth.stops_at_timeout.value_or(params->stops_at_timeout);
-  for (const ControllerNumber& number : ControllerNumbers()) {
-    const auto found = truth.controller.find(number.key);
-    if (found != truth.controller.end()) params->*number.slot = found->second;
-  }
+  const auto change = [&truth](const auto& numbers, auto* changed) {
+    for (const auto& number : numbers) {
+      const auto found = truth.controller.find(number.key);
+      if (found != truth.controller.end()) changed->*number.slot = found->second;
+    }
+  };
+  change(ControllerNumbers(), params);
+  if (params->casters) change(CasterNumbers(), &*params->casters);
 }
 
 }  // namespace hires::sim_robot

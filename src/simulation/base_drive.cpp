@@ -17,9 +17,19 @@ double Steered(double wz, double speed, const robot::BaseControllerParams& param
   return std::clamp(wz, -most, most);
 }
 
+/// As pr2_base_controller: translation keeps its direction, turning is clipped by itself.
+geometry::Twist2 ClippedApart(const geometry::Twist2& v, const robot::MotionSet& limits) {
+  const double linear = std::hypot(v.vx, v.vy);
+  const double scale =
+      linear > limits.max_linear_velocity ? limits.max_linear_velocity / linear : 1.0;
+  return {scale * v.vx, scale * v.vy,
+          std::clamp(v.wz, -limits.max_angular_velocity, limits.max_angular_velocity)};
+}
+
 /// What the base can follow: no sideways part where its wheels cannot, no turning but on an arc
 /// where it steers like a car; clipped to the controller's limits, the direction kept.
 geometry::Twist2 Feasible(geometry::Twist2 v, const robot::BaseControllerParams& params) {
+  if (params.casters) return ClippedApart(v, params.limits);
   if (params.drive != robot::Drive::kOmnidirectional) v.vy = 0.0;
   v.wz = Steered(v.wz, v.vx, params);
   const robot::MotionSet& limits = params.limits;
@@ -49,6 +59,7 @@ double StepsFor(double change, double step) {
 BaseDrive::BaseDrive(const robot::BaseControllerParams& params, const geometry::Pose2& X_MB)
     : params_(params) {
   motion_.X_MB = X_MB;
+  if (params.casters) casters_.emplace(*params.casters);
 }
 
 void BaseDrive::Send(const geometry::Twist2& velocity, double time) {
@@ -97,6 +108,19 @@ void BaseDrive::StepAxis(Axis* axis, double grip, double dt) const {
   axis->acceleration += dt * (w * w * (wanted - axis->velocity) -
                               2.0 * params_.loop_damping * w * axis->acceleration);
   axis->velocity += dt * axis->acceleration;
+}
+
+/// A wheel that slips rolls farther than the base comes: what is asked of the base is so much less.
+void BaseDrive::StepCasters(double grip, double traction, double dt) {
+  geometry::Twist2 V_B{x_.velocity, y_.velocity, yaw_.velocity};
+  casters_->Step({grip * x_.ramp, grip * y_.ramp, grip * yaw_.ramp}, traction, dt, &V_B);
+  const auto take = [dt](Axis* axis, double velocity) {
+    axis->acceleration = (velocity - axis->velocity) / dt;
+    axis->velocity = velocity;
+  };
+  take(&x_, V_B.vx);
+  take(&y_, V_B.vy);
+  take(&yaw_, V_B.wz);
 }
 
 /// Between two commands, too: a ramp from an arc forward to one backward would turn on the spot
@@ -154,7 +178,11 @@ void BaseDrive::Step(double time, double dt, double slip, double traction) {
     StepRamp(is_late ? geometry::Twist2{} : target_, dt);
   }
   const Axes before{x_, y_, yaw_};
-  for (Axis* axis : {&x_, &y_, &yaw_}) StepAxis(axis, 1.0 - slip, dt);
+  if (casters_) {
+    StepCasters(1.0 - slip, traction, dt);
+  } else {
+    for (Axis* axis : {&x_, &y_, &yaw_}) StepAxis(axis, 1.0 - slip, dt);
+  }
   if (params_.drive == robot::Drive::kCarLike) KeepToArc(before[2], dt);
   if (traction < std::numeric_limits<double>::infinity()) SlideAxes(before, traction, dt);
   if (push_) AddPush(dt);

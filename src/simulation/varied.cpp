@@ -10,6 +10,7 @@ using geometry::Pose3;
 robot::BaseControllerParams Varied(robot::BaseControllerParams params, const Variation& variation) {
   params.command_lag += variation.command_delay;
   params.loop_damping *= variation.loop_damping_factor;
+  if (params.casters) params.casters->wheel_damping *= variation.wheel_damping_factor;
   params.sway_compliance *= variation.sway_factor;
   return params;
 }

@@ -226,6 +226,7 @@ TEST(UncertaintyTest, EveryQuantityMovesItsNumberAlone) {
        [](const Variation& v) { return v.late_cycle_probability; }},
       {"late_cycle_delay", "s", 0.18, [](const Variation& v) { return v.late_cycle_delay; }},
       {"loop_damping", "factor", 0.19, [](const Variation& v) { return v.loop_damping_factor; }},
+      {"wheel_damping", "factor", 0.25, [](const Variation& v) { return v.wheel_damping_factor; }},
       {"sway", "factor", 0.2, [](const Variation& v) { return v.sway_factor; }},
       {"detection_noise", "m", 0.021, [](const Variation& v) { return v.detection_noise; }},
       {"detection_noise_yaw", "rad", 0.22,

@@ -36,6 +36,7 @@ imagination::ImaginationSetup SetupWith(
 
 /// Follows exactly, so that closed forms speak of it; at its time-out it stops within a step.
 void MakeIdeal(robot::BaseControllerParams* controller) {
+  controller->casters.reset();
   controller->loop_frequency = controller->command_lag = controller->sway_compliance = 0.0;
   controller->stops_at_timeout = true;
 }

@@ -278,6 +278,43 @@ TEST(Pr2Profile, BaseControllerHasTheOriginalsLimits) {
   EXPECT_TRUE(base.stops_at_timeout);  // as published; a scene with base_guard has the ramp
 }
 
+TEST(Pr2Profile, CastersAreThoseOfItsUrdf) {
+  ASSERT_TRUE(Pr2().profile.base_controller.casters);
+  const CasterParams& casters = *Pr2().profile.base_controller.casters;
+  EXPECT_EQ(casters.version, 2);
+  EXPECT_EQ(casters.at, JointNamed("fl_caster_rotation_joint").X_PJ.translation.x());
+  EXPECT_EQ(casters.at, -JointNamed("br_caster_rotation_joint").X_PJ.translation.y());
+  EXPECT_EQ(casters.track, JointNamed("fl_caster_l_wheel_joint").X_PJ.translation.y() -
+                               JointNamed("fl_caster_r_wheel_joint").X_PJ.translation.y());
+  const auto& model = Pr2().model;
+  const Link& wheel = model.links[*model.FindLink("fl_caster_l_wheel_link")];
+  const Link& caster = model.links[*model.FindLink("fl_caster_rotation_link")];
+  EXPECT_EQ(casters.wheel_radius,
+            std::get<geometry::Cylinder>(wheel.collisions.at(0).shape).radius);
+  EXPECT_EQ(casters.wheel_inertia, wheel.inertial->I_BBcm(1, 1));
+  // A wheel turns about its axle, so its inertia about the caster is a mean of two.
+  const double of_wheel = 0.5 * (wheel.inertial->I_BBcm(0, 0) + wheel.inertial->I_BBcm(2, 2)) +
+                          wheel.inertial->mass * 0.25 * casters.track * casters.track;
+  EXPECT_NEAR(casters.steering_inertia, caster.inertial->I_BBcm(2, 2) + 2.0 * of_wheel, 5e-5);
+}
+
+TEST(Pr2Profile, MassAndYawInertiaAreThoseOfItsLinks) {
+  const CasterParams& casters = *Pr2().profile.base_controller.casters;
+  const auto X_R = ForwardKinematics(Pr2().model, Pr2().profile.joints);
+  double mass = 0.0, inertia = 0.0;
+  for (std::size_t i = 0; i < X_R.size(); ++i) {
+    const auto& own = Pr2().model.links[i].inertial;
+    if (!own) continue;
+    const Eigen::Vector3d p = X_R[i] * own->p_BBcm;
+    const Eigen::Matrix3d turn = X_R[i].rotation.toRotationMatrix();
+    mass += own->mass;
+    inertia +=
+        (turn * own->I_BBcm * turn.transpose())(2, 2) + own->mass * (p.x() * p.x() + p.y() * p.y());
+  }
+  EXPECT_NEAR(casters.mass, mass, 0.005);
+  EXPECT_NEAR(casters.yaw_inertia, inertia, 0.05);
+}
+
 TEST(Pr2Profile, HeadLooksAtTheFloorAhead) {
   const auto X_R = ForwardKinematics(Pr2().model, Pr2().profile.joints);
   const Pose3& X_RHead = X_R[*Pr2().model.FindLink("head_tilt_link")];

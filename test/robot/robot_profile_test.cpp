@@ -234,6 +234,76 @@ TEST_F(RobotProfileFile, HashTellsApartEveryField) {
   }
 }
 
+/// The profile on four casters, in the place of the velocity loop.
+std::string OnCasters(const std::string& from = "", const std::string& to = "") {
+  std::string yaml = kProfile;
+  yaml.replace(yaml.find("drive: differential"), 19, "drive: omnidirectional");
+  yaml.erase(yaml.find("  max_linear_jerk"), std::string("  max_linear_jerk: 9.0\n").size());
+  const std::size_t loop = yaml.find("  loop_frequency");
+  yaml.replace(loop, yaml.find("  sway_compliance") - loop,
+               "  casters: {version: 1, at: 0.3, track: 0.11, wheel_radius: 0.08, wheel_inertia: "
+               "0.01, wheel_effort: 6.0, wheel_damping: 0.1, steering_inertia: 0.04, "
+               "steering_effort: 5.0, steering_speed: 9.0, steering_damping: 0.5, mass: 150.0, "
+               "yaw_inertia: 7.0, grip: 0.7}\n");
+  if (!from.empty()) yaml.replace(yaml.find(from), from.size(), to);
+  return yaml;
+}
+
+TEST_F(RobotProfileFile, CastersAreReadAndTellHashesApart) {
+  const Robot robot = LoadRobot(Write(OnCasters()));
+  ASSERT_TRUE(robot.profile.base_controller.casters);
+  const CasterParams& casters = *robot.profile.base_controller.casters;
+  EXPECT_EQ(casters.version, 1);
+  EXPECT_EQ(casters.at, 0.3);
+  EXPECT_EQ(casters.track, 0.11);
+  EXPECT_EQ(casters.wheel_radius, 0.08);
+  EXPECT_EQ(casters.wheel_inertia, 0.01);
+  EXPECT_EQ(casters.wheel_effort, 6.0);
+  EXPECT_EQ(casters.wheel_damping, 0.1);
+  EXPECT_EQ(casters.steering_inertia, 0.04);
+  EXPECT_EQ(casters.steering_effort, 5.0);
+  EXPECT_EQ(casters.steering_speed, 9.0);
+  EXPECT_EQ(casters.steering_damping, 0.5);
+  EXPECT_EQ(casters.mass, 150.0);
+  EXPECT_EQ(casters.yaw_inertia, 7.0);
+  EXPECT_EQ(casters.grip, 0.7);
+  for (const auto& [from, to] : std::vector<std::pair<std::string, std::string>>{
+           {"version: 1", "version: 2"},
+           {"at: 0.3,", "at: 0.31,"},
+           {"track: 0.11", "track: 0.12"},
+           {"wheel_radius: 0.08", "wheel_radius: 0.09"},
+           {"wheel_inertia: 0.01", "wheel_inertia: 0.02"},
+           {"wheel_effort: 6.0", "wheel_effort: 6.1"},
+           {"wheel_damping: 0.1", "wheel_damping: 0.2"},
+           {"steering_inertia: 0.04", "steering_inertia: 0.05"},
+           {"steering_effort: 5.0", "steering_effort: 5.1"},
+           {"steering_speed: 9.0", "steering_speed: 9.1"},
+           {"steering_damping: 0.5", "steering_damping: 0.6"},
+           {"mass: 150.0", "mass: 151.0"},
+           {"yaw_inertia: 7.0", "yaw_inertia: 7.1"},
+           {"grip: 0.7", "grip: 0.8"}}) {
+    EXPECT_NE(LoadRobot(Write(OnCasters(from, to))).hash(), robot.hash()) << to;
+  }
+}
+
+TEST_F(RobotProfileFile, RefusesCastersThatCannotBe) {
+  const auto why = [&](const std::string& from, const std::string& to) {
+    try {
+      LoadRobot(Write(OnCasters(from, to)));
+    } catch (const base::ConfigError& error) {
+      return std::string(error.what());
+    }
+    return std::string("accepted");
+  };
+  EXPECT_THAT(why("version: 1", "version: 3"), HasSubstr("casters.version"));
+  EXPECT_THAT(why("grip: 0.7", "grap: 0.7"), HasSubstr("grip"));
+  EXPECT_THAT(why("wheel_radius: 0.08", "wheel_radius: 0"), HasSubstr("wheel_radius"));
+  EXPECT_THAT(why("drive: omnidirectional", "drive: differential"),
+              testing::AllOf(HasSubstr("base_controller.casters"), HasSubstr("differential")));
+  EXPECT_THAT(why("  sway_compliance", "  loop_frequency: 20.0\n  sway_compliance"),
+              testing::AllOf(HasSubstr("loop_frequency"), HasSubstr("leave it out")));
+}
+
 TEST_F(RobotProfileFile, RefusesMissingAndUnknownKeys) {
   ExpectRefused("urdf: robots/tricycle.urdf\n", "", {"urdf is missing; add it"});
   ExpectRefused("differential", "car", {"base_controller.drive", "'car'", "differential"});

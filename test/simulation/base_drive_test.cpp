@@ -169,6 +169,32 @@ TEST(BaseDriveTest, AllAxesOfAChangeArriveTogether) {
   EXPECT_NEAR(drive.drive.motion().V_B.vx, 0.3, 1e-12);
 }
 
+TEST(BaseDriveTest, OneShareForAllAxesFromAnyTwistToAnyOther) {
+  for (int seed = 1; seed <= 200; ++seed) {
+    base::Rng rng(seed);
+    const auto draw = [&rng] {
+      return Twist2{rng.Uniform(-0.7, 0.7), rng.Uniform(-0.7, 0.7), rng.Uniform(-2.0, 2.0)};
+    };
+    const Twist2 from = draw(), to = draw();
+    Drive drive(Ideal());
+    drive.Send(from);
+    drive.StepFor(3.0);
+    drive.Send(to);
+    const double dx = to.vx - from.vx, dy = to.vy - from.vy, dw = to.wz - from.wz;
+    const double longest = std::max({std::abs(dx), std::abs(dy), std::abs(dw)}) / 2.0;  // [s]
+    for (int i = 1; i * kDt < longest; ++i) {
+      const Twist2 v = drive.Step().V_B;
+      const double share = i * kDt / longest;
+      ASSERT_NEAR(v.vx, from.vx + share * dx, 1e-9) << "seed " << seed;
+      ASSERT_NEAR(v.vy, from.vy + share * dy, 1e-9) << "seed " << seed;
+      ASSERT_NEAR(v.wz, from.wz + share * dw, 1e-9) << "seed " << seed;
+    }
+    drive.Step();
+    EXPECT_NEAR(drive.drive.motion().V_B.vx, to.vx, 1e-9) << "seed " << seed;
+    EXPECT_NEAR(drive.drive.motion().V_B.wz, to.wz, 1e-9) << "seed " << seed;
+  }
+}
+
 TEST(BaseDriveTest, BrakesToAStopWhenNoCommandComes) {
   robot::BaseControllerParams params = Ideal();
   params.command_timeout = 0.3;

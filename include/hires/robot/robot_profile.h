@@ -7,6 +7,7 @@
 
 #include "hires/geometry/polygon.h"
 #include "hires/geometry/pose.h"
+#include "hires/robot/caster_params.h"
 #include "hires/robot/extra_sensors.h"
 #include "hires/robot/robot_model.h"
 #include "hires/robot/upper_body.h"
@@ -40,6 +41,8 @@ struct BaseControllerParams {
   double command_timeout{0.2};           ///< [s] without a command after which it brakes to a stop
   bool stops_at_timeout{false};          ///< then at once, without the ramp of a command
   double command_lag{0.0};               ///< [s] from a command's sending to its effect
+  /// Empty: the base follows by the velocity loop below.
+  std::optional<CasterParams> casters;
   double loop_frequency{0.0};   ///< [rad/s] natural frequency of the velocity loop; 0: ideal
   double loop_damping{1.0};     ///< damping ratio of the velocity loop
   double sway_compliance{0.0};  ///< [rad s^2/m] how far the base leans per acceleration

@@ -7,6 +7,7 @@
 
 #include "hires/geometry/pose.h"
 #include "hires/robot/robot_profile.h"
+#include "hires/simulation/caster_drive.h"
 
 namespace hires::simulation {
 
@@ -24,8 +25,8 @@ struct BaseMotion {
 /// wheels cannot do (a differential drive ignores sideways commands, as its own does; a car-like
 /// one turns by |v| / min_turning_radius at most, at every moment), clipping to the controller's
 /// limits, a ramp of limited acceleration (all axes scaled alike, so that the direction of a change
-/// is kept) and jerk, a velocity loop of second order, braking on command timeout, with the ramp or
-/// at once, and the leaning of the body on its wheels. A value: copy it to save it.
+/// is kept) and jerk, casters or a velocity loop of second order, braking on command timeout, with
+/// the ramp or at once, and the leaning of the body on its wheels. A value: copy it to save it.
 class BaseDrive {
  public:
   BaseDrive(const robot::BaseControllerParams& params, const geometry::Pose2& X_MB);
@@ -69,6 +70,7 @@ class BaseDrive {
   void StandAtOnce();
   void StepRamp(const geometry::Twist2& target, double dt);
   void StepAxis(Axis* axis, double grip, double dt) const;
+  void StepCasters(double grip, double traction, double dt);
   void KeepToArc(const Axis& yaw_before, double dt);
   void SlideAxes(const Axes& before, double traction, double dt);
   void AddPush(double dt);
@@ -80,6 +82,7 @@ class BaseDrive {
   geometry::Twist2 target_;
   double last_command_{-1e9};  // [s] when the command in force took effect
   Axis x_, y_, yaw_;
+  std::optional<CasterDrive> casters_;  // in the place of the velocity loop
   Lean pitch_, roll_;
   std::optional<geometry::Twist2> push_;
   BaseMotion motion_;

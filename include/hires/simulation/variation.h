@@ -28,6 +28,7 @@ struct Variation {
   double late_cycle_probability{0.0};  ///< of each control cycle
   double late_cycle_delay{0.0};        ///< [s] how late such a cycle comes
   double loop_damping_factor{1.0};     ///< of the base's velocity loop
+  double wheel_damping_factor{1.0};    ///< of the rolling of wheels on casters
   double sway_factor{1.0};             ///< of the base's leaning
 
   /// How far off the hand objects are that are held at the start: [m] along the x axis (where the

@@ -5,13 +5,13 @@
 #include <algorithm>
 #include <cmath>
 
-#include "lab/src/experiment/stage.h"
 #include "base/parallel.h"
 #include "hires/base/rng.h"
-#include "lab/src/experiment/experiment.h"
 #include "hires/imagination/uncertainty.h"
 #include "hires/simulation/fall_watch.h"
 #include "hires/simulation/robot_simulator.h"
+#include "lab/src/experiment/experiment.h"
+#include "lab/src/experiment/stage.h"
 
 namespace hires::lab {
 namespace {
@@ -23,7 +23,6 @@ using simulation::RobotSimulator;
 constexpr double kTick = 0.02;     // [s] between two looks of the guard, as its node has it
 constexpr double kQuiet = 0.6;     // [s] that the base must have stood ...
 constexpr double kStill = 0.004;   // [rad] ... with its load no more tilted than this
-constexpr double kAtOnce = 1.0e4;  // [m/s^2] more than any speed needs within a step
 constexpr double kNoSlip = 100.0;  // friction of what closed forms suppose
 enum BrakingStreams : std::uint64_t { kBrakingTruth, kBrakingSimulator };
 
@@ -34,16 +33,9 @@ std::shared_ptr<const simulation::Scene> SceneFor(const ImaginationSetup& setup,
   floor.statics.clear();
   robot::Robot robot = setup.scene->robot;
   robot::BaseControllerParams& controller = robot.profile.base_controller;
-  if (way.kind == BrakingWay::Kind::kConstant && way.deceleration > 0.0) {
-    controller.limits.max_linear_acceleration = way.deceleration;
-  }
-  if (way.kind == BrakingWay::Kind::kSilence) controller.stops_at_timeout = true;
-  if (way.kind == BrakingWay::Kind::kAtOnce) {
-    controller.limits.max_linear_acceleration = kAtOnce;
-    controller.limits.max_angular_acceleration = kAtOnce;
-    controller.loop_frequency = 0.0;
-  }
+  controller = ControllerFor(controller, way);
   if (is_ideal) {
+    controller.casters.reset();
     controller.loop_frequency = controller.command_lag = controller.sway_compliance = 0.0;
   }
   auto scene = simulation::MakeScene(std::move(floor), std::move(robot));

@@ -7,8 +7,8 @@
 
 #include "base/parallel.h"
 #include "hires/base/param_reader.h"
-#include "lab/src/experiment/report.h"
 #include "hires/navigation/base_guard.h"
+#include "lab/src/experiment/report.h"
 
 // How a loaded base comes to a stand, and what becomes of the load: along the guard's ramp, at the
 // limit of the base's controller, harder, by its time-out, at once.
@@ -90,6 +90,11 @@ struct BrakingPlay {
   std::vector<BrakingStop> stops;
   std::optional<BrakingStop> ideal;
 };
+
+/// The robot's controller as a way needs it. Motors that brake harder than a base on casters can
+/// are those of one that has none.
+robot::BaseControllerParams ControllerFor(robot::BaseControllerParams controller,
+                                          const BrakingWay& way);
 
 /// Cells without what is played.
 /// @throws base::ConfigError for an unknown load, or one that cannot stand.

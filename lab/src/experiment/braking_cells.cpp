@@ -5,19 +5,21 @@
 #include <cstdlib>
 #include <limits>
 
-#include "lab/src/experiment/stage.h"
 #include "hires/base/text.h"
-#include "lab/src/experiment/braking.h"
-#include "lab/src/experiment/experiment.h"
 #include "hires/imagination/imagination_setup.h"
 #include "hires/navigation/standing_load.h"
 #include "hires/physics/closed_forms.h"
+#include "lab/src/experiment/braking.h"
+#include "lab/src/experiment/experiment.h"
+#include "lab/src/experiment/stage.h"
 
 // What is played, and what closed forms say about it.
 namespace hires::lab {
 namespace {
 
 using base::Between;
+
+constexpr double kAtOnce = 1.0e4;  // [m/s^2] more than any speed needs within a step
 
 BrakingWay ReadWay(base::ParamReader* in, const std::string& name) {
   if (name == "ramp") return {BrakingWay::Kind::kRamp, 0.0, name};
@@ -34,10 +36,34 @@ BrakingWay ReadWay(base::ParamReader* in, const std::string& name) {
   return {BrakingWay::Kind::kConstant, value, name};
 }
 
-/// [s] by which the wheels' loop, of second order, trails its target: 2 d / w.
+/// [s] by which the wheels trail their target: on casters in proportion to their effort, else a
+/// loop of second order, 2 d / w.
 double LoopLag(const robot::BaseControllerParams& controller) {
+  if (controller.casters) return robot::RollingLag(*controller.casters);
   return controller.loop_frequency > 0.0 ? 2.0 * controller.loop_damping / controller.loop_frequency
                                          : 0.0;
+}
+
+struct MotorStop {
+  double time{0.0};      // [s]
+  double distance{0.0};  // [m]
+};
+
+/// From straight on at speed v, when the wheels' target is 0 at once: at the limit of effort E,
+/// that is dv/dt = -(a + b v), until P v / r = E; then v falls as exp(-t / lag).
+MotorStop StopByMotors(const robot::CasterParams& casters, double v) {
+  MotorStop stop;
+  const double lag = robot::RollingLag(casters);
+  const double a = robot::HardestStop(casters, 0.0), b = robot::HardestStop(casters, 1.0) - a;
+  const double limit = casters.wheel_effort * casters.wheel_radius / robot::WheelGain(casters);
+  if (v > limit) {
+    stop.time = b > 0.0 ? std::log((a + b * v) / (a + b * limit)) / b : (v - limit) / a;
+    stop.distance = b > 0.0 ? (v - limit - a * stop.time) / b : 0.5 * (v * v - limit * limit) / a;
+    v = limit;
+  }
+  stop.distance += lag * v;
+  if (v > kStandingSpeed) stop.time += lag * std::log(v / kStandingSpeed);
+  return stop;
 }
 
 /// [s] in which the wheels' loop comes from speed v to a stand when its target is 0 at once: its
@@ -51,9 +77,12 @@ double SettlingTime(const robot::BaseControllerParams& controller, double v) {
 
 void StateStop(const BrakingConfig& braking, const robot::BaseControllerParams& controller,
                BrakingCell* cell) {
-  const double v = cell->motion.linear;
+  const bool is_led = cell->way.kind == BrakingWay::Kind::kRamp;
+  const double share =
+      controller.casters && !is_led ? robot::RollingShare(*controller.casters) : 1.0;
+  const double v = share * cell->motion.linear;
   double lag = controller.command_lag + LoopLag(controller);
-  if (cell->way.kind == BrakingWay::Kind::kRamp) {
+  if (is_led) {
     const navigation::PlanarStop stop({v, 0.0, cell->motion.angular}, {}, cell->limits,
                                       braking.guard.braking);
     cell->deceleration = cell->limits.max_deceleration;
@@ -71,9 +100,13 @@ void StateStop(const BrakingConfig& braking, const robot::BaseControllerParams& 
     cell->deceleration = std::numeric_limits<double>::infinity();
     lag = controller.command_lag;  // only then the wheels lock, or the time-out begins
     if (cell->way.kind == BrakingWay::Kind::kSilence) {
+      const double fastest = std::max(v, std::abs(cell->motion.angular));
       cell->stated_time = controller.command_timeout +
-                          SettlingTime(controller, std::max(v, std::abs(cell->motion.angular)));
-      cell->stated_distance = v * (controller.command_timeout + LoopLag(controller));
+                          (controller.casters ? StopByMotors(*controller.casters, fastest).time
+                                              : SettlingTime(controller, fastest));
+      cell->stated_distance = v * controller.command_timeout +
+                              (controller.casters ? StopByMotors(*controller.casters, v).distance
+                                                  : v * LoopLag(controller));
     }
   }
   cell->stated_time += lag;
@@ -121,6 +154,22 @@ BrakingConfig ReadBraking(base::ParamReader* in, const std::string& path,
   return braking;
 }
 
+robot::BaseControllerParams ControllerFor(robot::BaseControllerParams controller,
+                                          const BrakingWay& way) {
+  if (way.kind == BrakingWay::Kind::kConstant && way.deceleration > 0.0) {
+    controller.limits.max_linear_acceleration = way.deceleration;
+    controller.casters.reset();
+  }
+  if (way.kind == BrakingWay::Kind::kSilence) controller.stops_at_timeout = true;
+  if (way.kind == BrakingWay::Kind::kAtOnce) {
+    controller.limits.max_linear_acceleration = kAtOnce;
+    controller.limits.max_angular_acceleration = kAtOnce;
+    controller.loop_frequency = 0.0;
+    controller.casters.reset();
+  }
+  return controller;
+}
+
 std::vector<BrakingPlay> BrakingCells(const BrakingConfig& braking, const Stage& stage) {
   const simulation::Scene& scene = *stage.setup.scene;
   const robot::BaseControllerParams& controller = scene.robot.profile.base_controller;
@@ -139,7 +188,7 @@ std::vector<BrakingPlay> BrakingCells(const BrakingConfig& braking, const Stage&
         cell.way = way;
         cell.standing = standing;
         cell.limits = limits;
-        StateStop(braking, controller, &cell);
+        StateStop(braking, ControllerFor(controller, way), &cell);
         Predict(*model, scene.world.gravity, &cell);
         plays.push_back({std::move(cell), {}, std::nullopt});
       }

@@ -114,7 +114,12 @@ class CarriedLoad {
     return physics::SuddenStopTopplingSpeed(load_.support, load_.com_height, gyration, gravity_);
   }
   std::string HowItBearsASuddenStop() const {
-    return Slides() < Tips() ? "slides where wheels lock" : "topples where wheels lock";
+    const std::string how =
+        Slides() < Tips() ? "slides where wheels lock" : "topples where wheels lock";
+    if (!controller_.casters) return how;
+    return fmt::format(
+        "{}; its motors stop it with {:.1f} m/s^2 at most", how,
+        robot::HardestStop(*controller_.casters, controller_.limits.max_linear_velocity));
   }
 
   const robot::BaseControllerParams& controller_;
