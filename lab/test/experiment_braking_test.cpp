@@ -1,6 +1,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <fstream>
 #include <nlohmann/json.hpp>
@@ -105,19 +106,43 @@ TEST(BrakingCellsTest, ClosedFormsSpeakOfEachStraightStop) {
   EXPECT_FALSE(Cell(plays, "peppermill1", 0.55, "ramp").is_comparable);
 }
 
+// config/robots/pr2.yaml: radius, mass with the wheels' spinning, gain of version 2, damping,
+// effort.
+constexpr double kRadius = 0.074792, kMass = 268.37 + 8.0 * 0.0152182 / (kRadius * kRadius);
+constexpr double kGain = 5.0, kDamping = 0.25, kEffort = 7.0;
+
+/// From a speed [m/s] to 0.01 m/s, step by step.
+struct SteppedStop {
+  explicit SteppedStop(double v) {
+    constexpr double kStep = 1e-6;
+    for (; v > 0.01; time += kStep) {
+      const double effort = std::min(kEffort, kGain * v / kRadius) + kDamping * v / kRadius;
+      distance += kStep * v;
+      v -= kStep * 8.0 * effort / (kRadius * kMass);
+    }
+    distance += v * kMass * kRadius * kRadius / (8.0 * (kGain + kDamping));  // what is left to roll
+  }
+  double time{0.0}, distance{0.0};
+};
+
 TEST(BrakingCellsTest, StatedDistancesIncludeTheLagOfTheWheels) {
   ExperimentConfig config = Config();
   const auto plays = BrakingCells(BrakingOf(&config), MakeStage(config));
-  const double lag = 0.02 + 2.0 * 0.7 / 20.0;  // config/robots/pr2.yaml
+  const double lag = 0.001 + kMass * kRadius * kRadius / (8.0 * (kGain + kDamping));
+  const double v = 0.30 * kGain / (kGain + kDamping);
   const BrakingCell& controller = Cell(plays, "peppermill1", 0.30, "controller");
-  EXPECT_NEAR(controller.stated_distance, 0.30 * 0.30 / 4.0 + 0.30 * lag, 1e-12);
-  EXPECT_NEAR(controller.stated_time, 0.15 + lag, 1e-12);
+  EXPECT_NEAR(controller.stated_distance, v * v / 4.0 + v * lag, 1e-12);
+  EXPECT_NEAR(controller.stated_time, v / 2.0 + lag, 1e-12);
   const BrakingCell& silence = Cell(plays, "peppermill1", 0.30, "silence");
-  EXPECT_NEAR(silence.stated_distance, 0.30 * (0.2 + lag), 1e-12);
-  EXPECT_NEAR(silence.stated_time, 0.2 + 0.02 + std::log(30.0) / (0.7 * 20.0), 1e-12);
+  const SteppedStop stop(v);
+  EXPECT_NEAR(silence.stated_distance, v * 0.201 + stop.distance, 1e-5);
+  EXPECT_NEAR(silence.stated_time, 0.201 + stop.time, 1e-4);
   const BrakingCell& ramp = Cell(plays, "peppermill1", 0.55, "ramp");
   EXPECT_NEAR(ramp.stated_distance, navigation::StoppingDistance(0.55, ramp.limits) + 0.55 * lag,
               1e-9);
+  // No casters brake with 5 m/s^2: then the base has none, nor any lag but its command's.
+  const BrakingCell& hard = Cell(plays, "peppermill1", 0.30, "5");
+  EXPECT_NEAR(hard.stated_distance, 0.30 * 0.30 / 10.0 + 0.30 * 0.001, 1e-12);
 }
 
 TEST(BrakingCellsTest, AnUnknownLoadIsRefused) {
