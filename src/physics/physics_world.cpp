@@ -4,7 +4,6 @@
 #include <ode/ode.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <utility>
 
@@ -22,13 +21,9 @@ using detail::Group;
 using detail::LooseBody;
 using detail::LooseShape;
 using detail::NearList;
-using detail::RawState;
 using detail::ToEigen;
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
-
-/// What a step's constraints are softened to, one after the other, when ODE cannot solve them.
-constexpr std::array<double, 3> kSofterCfm = {1e-7, 1e-6, 1e-5};
 
 void RequireBetween(const char* name, double value, double lower, double upper,
                     const char* advice) {
@@ -66,19 +61,6 @@ void SetMass(dBodyID body, const geometry::MassProperties& properties) {
   dMassSetParameters(&mass, properties.mass, 0, 0, 0, I(0, 0), I(1, 1), I(2, 2), I(0, 1), I(0, 2),
                      I(1, 2));
   dBodySetMass(body, &mass);
-}
-
-/// [J/kg]
-double TurningEnergy(dBodyID body, const dReal* rotation, const Vector3d& w_W) {
-  dMass mass;
-  dBodyGetMass(body, &mass);
-  const Eigen::Quaterniond R_WB(rotation[0], rotation[1], rotation[2], rotation[3]);
-  const Vector3d w = R_WB.conjugate() * w_W;
-  Matrix3d I;
-  for (int row = 0; row < 3; ++row) {
-    for (int column = 0; column < 3; ++column) I(row, column) = mass.I[4 * row + column];
-  }
-  return 0.5 * w.dot(I * w) / mass.mass;
 }
 
 }  // namespace
@@ -193,62 +175,6 @@ BodyState PhysicsWorld::Impl::LooseState(const LooseBody& body) const {
   return state;
 }
 
-/// ODE's solver gives up on a step now and then, at the brink of sliding and tipping, and leaves
-/// friction out. Slightly softer constraints get it over the tie.
-void PhysicsWorld::Impl::MoveLoose() {
-  const std::size_t num_messages = NumOdeMessages();
-  KeepRaw();
-  dWorldStep(world.get(), params.time_step);
-  for (const double cfm : kSofterCfm) {
-    if (NumOdeMessages() == num_messages) break;
-    ForgetOdeMessages(num_messages);
-    PutRawBack();
-    dWorldSetCFM(world.get(), std::max(cfm, params.cfm));
-    dWorldStep(world.get(), params.time_step);
-    dWorldSetCFM(world.get(), params.cfm);
-  }
-}
-
-void PhysicsWorld::Impl::KeepRaw() {
-  raw.resize(loose.size());
-  for (std::size_t i = 0; i < loose.size(); ++i) {
-    dBodyCopyPosition(loose[i].ode, raw[i].position);
-    dBodyCopyQuaternion(loose[i].ode, raw[i].rotation);
-    std::copy_n(dBodyGetLinearVel(loose[i].ode), 3, raw[i].linear);
-    std::copy_n(dBodyGetAngularVel(loose[i].ode), 3, raw[i].angular);
-  }
-}
-
-void PhysicsWorld::Impl::PutRawBack() {
-  for (std::size_t i = 0; i < loose.size(); ++i) {
-    const RawState& at = raw[i];
-    dBodySetPosition(loose[i].ode, at.position[0], at.position[1], at.position[2]);
-    dBodySetQuaternion(loose[i].ode, at.rotation);
-    dBodySetLinearVel(loose[i].ode, at.linear[0], at.linear[1], at.linear[2]);
-    dBodySetAngularVel(loose[i].ode, at.angular[0], at.angular[1], at.angular[2]);
-  }
-}
-
-/// Seen from a surface of constant velocity u, no contact with it gives energy; so it gives a body
-/// at most u |v' - v| for each of its kilograms, and of all that touch at once none more than the
-/// fastest.
-void PhysicsWorld::Impl::NoteBroken() {
-  if (broken >= 0) return;
-  for (std::size_t i = 0; i < loose.size(); ++i) {
-    const LooseBody& body = loose[i];
-    if (body.held) continue;
-    const Vector3d v = ToEigen(dBodyGetLinearVel(body.ode)),
-                   w = ToEigen(dBodyGetAngularVel(body.ode));
-    const double after =
-        0.5 * v.squaredNorm() + TurningEnergy(body.ode, dBodyGetQuaternion(body.ode), w);
-    if (after <= kUnexplained) continue;
-    const double before =
-        0.5 * body.v.squaredNorm() + TurningEnergy(body.ode, raw[i].rotation, body.w);
-    const double given = std::sqrt(fastest_surface2) * (v - body.v).norm();
-    if (after - before - given > kUnexplained) broken = body.id;
-  }
-}
-
 void PhysicsWorld::Impl::MoveDriven() {
   for (Group& group : groups) {
     if (group.is_static) continue;
@@ -346,6 +272,7 @@ void PhysicsWorld::Step() {
   EnsureOdeIsReady();
   Impl& impl = *impl_;
   impl.FindAllContacts();
+  impl.num_contacts = static_cast<int>(impl.contacts.size());
   impl.MoveLoose();
   impl.NoteBroken();
   dJointGroupEmpty(impl.joints.get());

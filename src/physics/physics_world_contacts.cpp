@@ -12,6 +12,7 @@ using detail::Group;
 using detail::LooseBody;
 using detail::LooseShape;
 using detail::NearList;
+using detail::RotationOf;
 using detail::ToEigen;
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
@@ -26,13 +27,6 @@ constexpr double kNoLean = 1e-6;
 
 double SquaredDistance(const geometry::Aabb& bounds, const Vector3d& p) {
   return (bounds.lower - p).cwiseMax(p - bounds.upper).cwiseMax(0.0).squaredNorm();
-}
-
-Matrix3d RotationOf(dBodyID body) {
-  const dReal* r = dBodyGetRotation(body);
-  Matrix3d R;
-  R << r[0], r[1], r[2], r[4], r[5], r[6], r[8], r[9], r[10];
-  return R;
 }
 
 /// A direction in the contact plane: along the slip, or any one where there is none.
@@ -70,7 +64,8 @@ void PhysicsWorld::Impl::PlaceLoose(LooseBody* body) {
 }
 
 void PhysicsWorld::Impl::FindAllContacts() {
-  num_contacts = 0;
+  contacts.clear();
+  is_pile = false;
   fastest_surface2 = 0.0;
   touches.clear();
   for (LooseBody& body : loose) {
@@ -233,9 +228,10 @@ void PhysicsWorld::Impl::AddContact(const ContactPoint& point, const Vector3d& v
   CopyTo(contact->geom.normal, point.normal);
   contact->geom.depth = point.depth;
   CopyTo(contact->fdir1, along);
-  const dJointID joint = dJointCreateContact(world.get(), joints.get(), contact);
-  dJointAttach(joint, body->ode, other_body == nullptr ? nullptr : other_body->ode);
-  ++num_contacts;
+  const int index = static_cast<int>(body - loose.data());
+  const int other = other_body == nullptr ? -1 : static_cast<int>(other_body - loose.data());
+  contacts.push_back({*contact, index, other, point.normal.cross(slip).norm()});
+  is_pile = is_pile || (other >= 0 && !body->held && !other_body->held);
 }
 
 void PhysicsWorld::Impl::CatchFast(const Group& group, const Vector3d& v_rel, Fixture* fixture,

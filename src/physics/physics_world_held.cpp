@@ -87,12 +87,9 @@ const std::vector<Touch>& PhysicsWorld::touches() const { return impl_->touches;
 
 std::vector<Touch> PhysicsWorld::FindTouches() {
   std::vector<Touch> last;
-  const int num_contacts = impl_->num_contacts;
   std::swap(last, impl_->touches);
   impl_->FindAllContacts();
-  dJointGroupEmpty(impl_->joints.get());
   std::swap(last, impl_->touches);
-  impl_->num_contacts = num_contacts;
   return last;
 }
 

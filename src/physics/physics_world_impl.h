@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "hires/physics/physics_world.h"
+#include "physics/contact_solver.h"
 #include "physics/placed_shape.h"
 
 namespace hires::physics {
@@ -85,6 +86,13 @@ struct LooseBody {
   Vector3d p_WC, v, w;  // at the start of the step
 };
 
+/// A contact point of this step.
+struct PlacedContact {
+  dContact contact;
+  int body, other;  // indices of loose bodies; other -1: static or driven
+  double slip;      // [m/s] in the contact plane
+};
+
 /// ODE's own numbers of a body.
 struct RawState {
   dVector3 position, linear, angular;
@@ -98,6 +106,13 @@ struct BodyEntry {
 };
 
 inline Vector3d ToEigen(const dReal* v) { return {v[0], v[1], v[2]}; }
+
+inline Matrix3d RotationOf(dBodyID body) {
+  const dReal* r = dBodyGetRotation(body);
+  Matrix3d R;
+  R << r[0], r[1], r[2], r[4], r[5], r[6], r[8], r[9], r[10];
+  return R;
+}
 
 /// How ODE's things are given back.
 struct Deleters {
@@ -119,6 +134,7 @@ struct PhysicsWorld::Impl {
   using Group = detail::Group;
   using LooseBody = detail::LooseBody;
   using NearList = detail::NearList;
+  using PlacedContact = detail::PlacedContact;
   using RawState = detail::RawState;
 
   explicit Impl(const PhysicsParams& params_in);
@@ -163,6 +179,11 @@ struct PhysicsWorld::Impl {
   void AddContacts(const PlacedShape& shape, const PlacedShape& other, LooseBody* body,
                    LooseBody* other_body, const SurfaceVelocity& other_velocity);
   void MoveLoose();
+  void MoveByOde();
+  /// True if it found how; else all is as before.
+  bool MoveBySolver();
+  /// What all loose bodies are after a step without contacts.
+  std::vector<SolverBody> FreeBodies();
   void NoteBroken();
   void KeepRaw();
   void PutRawBack();
@@ -171,8 +192,10 @@ struct PhysicsWorld::Impl {
   PhysicsParams params;
   Vector3d acceleration{Vector3d::Zero()};  // extra, of loose bodies
   std::uint64_t num_steps{0};
-  int num_contacts{0};
-  double fastest_surface2{0.0};  // [m^2/s^2] of all that touched a loose body in this step
+  int num_contacts{0};                  // of the last step
+  std::vector<PlacedContact> contacts;  // of what FindAllContacts looked at last
+  bool is_pile{false};                  // some loose bodies touch one another
+  double fastest_surface2{0.0};         // [m^2/s^2] of all that touched a loose body in this step
   BodyId broken{-1};
   std::unique_ptr<dxThreadingImplementation, Deleters> threading;  // outlives the world
   std::unique_ptr<dxWorld, Deleters> world;
