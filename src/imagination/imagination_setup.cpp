@@ -255,6 +255,20 @@ std::uint64_t PutGuardBefore(bool is_there, robot::Robot* robot) {
   return hasher.value();
 }
 
+/// [m] By which the drawn place may put the robot's outline off its true place; more in one of 80
+/// draws of a coordinate.
+double PlaceMargin(const Uncertainty& uncertainty, const geometry::Polygon& footprint) {
+  constexpr double kScore = 2.5;  // standard deviations
+  const auto largest = [&](const char* name) {
+    const auto found = uncertainty.quantities.find(name);
+    if (found == uncertainty.quantities.end()) return 0.0;
+    return std::max(std::abs(found->second.AtScore(kScore)),
+                    std::abs(found->second.AtScore(-kScore)));
+  };
+  return std::hypot(std::max(largest("localisation_x"), largest("localisation_y")),
+                    geometry::CircumscribedRadius(footprint) * largest("localisation_yaw"));
+}
+
 /// Whoever has no base laser drives by the map alone.
 SetupConfig ForRobot(SetupConfig config, const robot::Robot& robot) {
   if (!config.driving.obstacle_layer || !robot.profile.laser_link.empty()) return config;
@@ -351,7 +365,11 @@ void SetObstacleLayer(const std::string& path, SetupConfig* config) {
 ImaginationSetup LoadImaginationSetup(const SetupConfig& scene) {
   ImaginationSetup setup;
   robot::Robot robot = robot::LoadAnyRobot(scene.robot);
-  const SetupConfig config = ForRobot(scene, robot);
+  SetupConfig config = ForRobot(scene, robot);
+  setup.uncertainty = std::make_shared<const Uncertainty>(
+      config.uncertainty == "none" ? NoUncertainty() : LoadUncertainty(config.uncertainty));
+  if (robot.profile.laser_link.empty())
+    config.driving.place_margin = PlaceMargin(*setup.uncertainty, robot.profile.footprint);
   std::optional<world::OccupancyGrid> map;
   if (!config.map.empty()) map = world::LoadMap(config.map);
   setup.catalogue = config.objects;
@@ -370,6 +388,7 @@ ImaginationSetup LoadImaginationSetup(const SetupConfig& scene) {
   hasher.Add(world.hash);
   hasher.Add(config.params_hash);
   hasher.Add(config.layer_hash);
+  if (config.driving.place_margin > 0.0) hasher.Add(config.driving.place_margin);
   setup.physics_hash = PhysicsHash(config.physics, config.rollout, config.standing);
   setup.scene = simulation::MakeScene(std::move(world), std::move(robot), config.sensing.memory,
                                       LoadSight(config, &hasher));
@@ -381,8 +400,6 @@ ImaginationSetup LoadImaginationSetup(const SetupConfig& scene) {
   setup.translator.world = {setup.scene, &setup.scene->world};
   setup.translator.robot = {setup.scene, &setup.scene->robot};
   setup.translator.areas = translation::AreasOf(setup.scene->world, setup.scene->robot);
-  setup.uncertainty = std::make_shared<const Uncertainty>(
-      config.uncertainty == "none" ? NoUncertainty() : LoadUncertainty(config.uncertainty));
   setup.rollout = config.rollout;
   setup.physics = config.physics;
   setup.standing = config.standing;

@@ -256,6 +256,17 @@ Costmap Costmap::WithRoomFor(const geometry::Polygon& outline_M) const {
   return roomier;
 }
 
+Costmap Costmap::WithAccessTo(const geometry::Polygon& outline_M) const {
+  Costmap open = *this;
+  ForEachSpan(outline_M, *this, [&](int row, int first, int last) {
+    std::uint8_t* costs = &open.costs_[static_cast<std::size_t>(row) * width_];
+    for (int column = std::max(first, 0); column <= std::min(last, width_ - 1); ++column) {
+      if (costs[column] == kInscribedCost) costs[column] = kInscribedCost - 1;
+    }
+  });
+  return open;
+}
+
 Costmap Costmap::WithInscribedRadius(double inscribed_radius) const {
   world::OccupancyGrid grid;
   grid.resolution = resolution_;

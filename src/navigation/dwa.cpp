@@ -10,6 +10,7 @@
 #include "hires/geometry/angles.h"
 #include "navigation/arc_ends.h"
 #include "navigation/distance_grid.h"
+#include "navigation/goal_approach.h"
 #include "navigation/oscillation_guard.h"
 #include "navigation/swept_footprint.h"
 #include "navigation/velocity_window.h"
@@ -21,7 +22,9 @@ constexpr double kKeptBehind = 1.0;     // [m] of the path already driven
 constexpr double kRoomSpacing = 0.025;  // [m] between places tried for turning
 constexpr double kRoomReached = 0.01;   // [m]
 constexpr double kRoomShare = 0.9;      // of the goal's tolerance, so that stopping keeps within
-constexpr double kReturnShare = 0.6;    // of it, so that turning keeps within, too
+constexpr double kBriskShare = 0.4;     // of it
+constexpr double kBriskTurns = 2.0;     // goal's tolerances of yaw
+constexpr double kInnerShare = 0.6;     // of it, so that turning keeps within, too
 
 // [m] Kept free around the footprint where possible: poses between two checked ones may lie a
 // quarter of a cell nearer to things, and a base does not follow to the millimetre.
@@ -38,10 +41,6 @@ struct Candidate {
   }
 };
 bool Worse(const Candidate& a, const Candidate& b) { return b.Key() < a.Key(); }
-
-double TimeToStop(double velocity, double acceleration) {
-  return acceleration > 0.0 ? std::abs(velocity) / acceleration : 0.0;
-}
 
 double Speed(const geometry::Twist2& V) { return std::hypot(V.vx, V.vy); }
 
@@ -81,16 +80,29 @@ std::vector<Eigen::Vector2d> PointsAlong(const std::vector<geometry::Pose2>& pat
   return points;
 }
 
+std::vector<SweptFootprint> SweepsOf(const DwaParams& params, const geometry::Polygon& footprint,
+                                     double margin) {
+  std::vector<double> margins{kMargin};
+  if (margin > 0.0) margins = {kMargin + margin, kMargin + 0.5 * margin, kMargin};
+  std::vector<SweptFootprint> sweeps;
+  for (const double more : margins)
+    sweeps.emplace_back(geometry::Padded(footprint, more), params.sim_granularity,
+                        params.angular_sim_granularity);
+  sweeps.emplace_back(footprint, params.sim_granularity, params.angular_sim_granularity);
+  return sweeps;
+}
+
 }  // namespace
 
 struct DwaPlanner::Impl {
   Impl(const DwaParams& params, const geometry::Polygon& footprint)
       : params_(params),
-        sweep_(footprint, params.sim_granularity, params.angular_sim_granularity),
-        wide_sweep_(geometry::Padded(footprint, kMargin), params.sim_granularity,
-                    params.angular_sim_granularity),
+        footprint_(footprint),
+        sweeps_(SweepsOf(params, footprint, 0.0)),
         guard_(params.oscillation_reset_distance, params.oscillation_reset_angle,
-               params.min_linear_velocity) {}
+               params.min_linear_velocity),
+        watch_(params),
+        approach_(params) {}
 
   void SetPath(const std::vector<geometry::Pose2>& path);
   DwaResult Update(const Costmap& costmap, const geometry::Pose2& X_MB,
@@ -111,10 +123,13 @@ struct DwaPlanner::Impl {
   double Duration() const;
 
   // At the goal.
+  std::optional<DwaResult> CloseIn(const Costmap& costmap, const geometry::Pose2& X_MB,
+                                   const geometry::Twist2& V_B);
   DwaResult AtGoal(const Costmap& costmap, const geometry::Pose2& X_MB,
                    const geometry::Twist2& V_B);
   DwaResult Brake(const Costmap& costmap, const geometry::Pose2& X_MB, const geometry::Twist2& V_B);
   DwaResult Turn(const Costmap& costmap, const geometry::Pose2& X_MB, const geometry::Twist2& V_B);
+  double TurningSpeed(double angle) const;
   std::optional<double> FreeTurn(const Costmap& costmap, const geometry::Pose2& X_MB,
                                  SweptFootprint* sweep) const;
   DwaResult MakeRoom(const Costmap& costmap, const geometry::Pose2& X_MB,
@@ -122,10 +137,11 @@ struct DwaPlanner::Impl {
   std::optional<Eigen::Vector2d> FindRoom(const Costmap& costmap, const geometry::Pose2& X_MB);
   bool IsWayFree(const Costmap& costmap, const geometry::Pose2& X_MB, const Eigen::Vector2d& p_MTo);
   bool CanMoveSideways() const { return params_.max_lateral_velocity > 0.0; }
-  /// Turning to the goal's heading may move the believed place by some cm: if the robot stopped at
-  /// the edge again, it would miss the goal again. A base that moves sideways returns to the edge,
-  /// for it need not turn away and back.
-  bool IsReturning() const { return has_missed_ && !CanMoveSideways(); }
+  bool IsBrisk() const;
+  SweptFootprint& Exact() { return sweeps_.back(); }
+  SweptFootprint& Wide() { return sweeps_[sweeps_.size() - 2]; }  ///< with the least margin
+  bool IsReturning() const { return num_missed_ > 0 && !CanMoveSideways(); }
+  bool IsReached(const Costmap& costmap, const geometry::Pose2& X_MB);
   double YawError(const geometry::Pose2& X_MB) const {
     return geometry::WrapToPi(X_MGoal_.yaw - X_MB.yaw);
   }
@@ -140,9 +156,12 @@ struct DwaPlanner::Impl {
 
   DwaParams params_;
   robot::MotionSet limits_;
-  SweptFootprint sweep_;
-  SweptFootprint wide_sweep_;  // with margin
+  geometry::Polygon footprint_;
+  double margin_{0.0};                  // [m]
+  std::vector<SweptFootprint> sweeps_;  // with margins, the widest first; the last one without
   OscillationGuard guard_;
+  GoalWatch watch_;
+  GoalApproach approach_;
 
   std::vector<Eigen::Vector2d> path_;  // dense
   std::size_t first_{0};               // of path_ that is not yet well behind the robot
@@ -153,9 +172,11 @@ struct DwaPlanner::Impl {
   bool align_{false};  // does the forward point have to follow the path?
 
   bool position_reached_{false};
-  bool has_missed_{false};  // came to rest out of tolerance on this path
+  int num_missed_{0};           // times that it came to rest out of tolerance of this goal
+  std::size_t num_blocked_{0};  // times that something was in the way of coming close to this goal
   bool turning_{false};
   int turn_sign_{0};
+  double turning_at_{0.0};               // [rad/s] commanded last
   std::optional<Eigen::Vector2d> room_;  // where to turn, if not here
 };
 
@@ -163,9 +184,10 @@ void DwaPlanner::Impl::SetPath(const std::vector<geometry::Pose2>& path) {
   path_ = PointsAlong(path, params_.sim_granularity);
   first_ = 0;
   const geometry::Pose2 X_GoalNew = X_MGoal_.Inverse() * path.back();
-  if (X_GoalNew.position().norm() > kRoomReached) has_missed_ = false;  // another goal
+  if (X_GoalNew.position().norm() > kRoomReached) num_missed_ = 0;  // another goal
   X_MGoal_ = path.back();
   guard_.Reset();
+  num_blocked_ = 0;
   LeaveGoal();
 }
 
@@ -173,14 +195,47 @@ void DwaPlanner::Impl::LeaveGoal() {
   position_reached_ = turning_ = false;
   turn_sign_ = 0;
   room_.reset();
+  watch_.Reset();
+  approach_.End();
 }
 
 DwaResult DwaPlanner::Impl::Update(const Costmap& costmap, const geometry::Pose2& X_MB,
                                    const geometry::Twist2& V_B) {
   DropDrivenPath(X_MB.position());
-  const double share = IsReturning() ? kReturnShare : 1.0;
-  if (GoalDistance(X_MB) <= share * params_.xy_goal_tolerance) position_reached_ = true;
-  return position_reached_ ? AtGoal(costmap, X_MB, V_B) : Drive(costmap, X_MB, V_B);
+  if (approach_.is_active()) {
+    if (const auto result = CloseIn(costmap, X_MB, V_B)) return *result;
+  }
+  if (IsReached(costmap, X_MB)) position_reached_ = true;
+  if (position_reached_) return AtGoal(costmap, X_MB, V_B);
+  if (watch_.Swings(X_MB, X_MGoal_.position())) {
+    watch_.Reset();
+    approach_.BeginTo(X_MGoal_);
+    if (const auto result = CloseIn(costmap, X_MB, V_B)) return *result;
+  }
+  return Drive(costmap, X_MB, V_B);
+}
+
+/// Turning to the goal's heading may move the believed place by some cm. A base that moves sideways
+/// stops at the edge of the tolerance all the same, for it need not turn away to come back; so does
+/// one that could not turn further inside.
+bool DwaPlanner::Impl::IsReached(const Costmap& costmap, const geometry::Pose2& X_MB) {
+  const double distance = GoalDistance(X_MB);
+  if (distance > params_.xy_goal_tolerance) return false;
+  return CanMoveSideways() || distance <= kInnerShare * params_.xy_goal_tolerance ||
+         !FreeTurn(costmap, {X_MGoal_.x, X_MGoal_.y, X_MB.yaw}, &Wide());
+}
+
+/// None: it is there, or something is in its way.
+std::optional<DwaResult> DwaPlanner::Impl::CloseIn(const Costmap& costmap,
+                                                   const geometry::Pose2& X_MB,
+                                                   const geometry::Twist2& V_B) {
+  SweptFootprint* sweep = &sweeps_[std::min(num_blocked_, sweeps_.size() - 1)];
+  const GoalApproach::Step step = approach_.Update(costmap, X_MB, V_B, sweep);
+  if (step.state == GoalApproach::State::kBlocked) ++num_blocked_;
+  if (step.state == GoalApproach::State::kDriving)
+    return DwaResult{DwaStatus::kDriving, step.velocity, 1};
+  position_reached_ = step.state == GoalApproach::State::kArrived;
+  return std::nullopt;
 }
 
 void DwaPlanner::Impl::DropDrivenPath(const Eigen::Vector2d& p_MB) {
@@ -195,12 +250,13 @@ void DwaPlanner::Impl::DropDrivenPath(const Eigen::Vector2d& p_MB) {
 DwaResult DwaPlanner::Impl::Drive(const Costmap& costmap, const geometry::Pose2& X_MB,
                                   const geometry::Twist2& V_B) {
   DwaResult result;
-  if (!sweep_.IsFree(costmap, X_MB, {}, 0.0) || !PrepareGrids(costmap, X_MB)) return result;
+  if (!Exact().IsFree(costmap, X_MB, {}, 0.0) || !PrepareGrids(costmap, X_MB)) return result;
   const auto velocities = NextVelocities(V_B);
   result.num_samples = static_cast<int>(velocities.size());
   const auto candidates = ScoreDistances(velocities, X_MB, costmap.resolution());
-  auto best = BestWithObstacles(candidates, costmap, X_MB, &wide_sweep_);
-  if (!best) best = BestWithObstacles(candidates, costmap, X_MB, &sweep_);
+  std::optional<Candidate> best;
+  for (auto sweep = sweeps_.begin(); sweep != sweeps_.end() && !best; ++sweep)
+    best = BestWithObstacles(candidates, costmap, X_MB, &*sweep);
   if (!best) {  // come to rest as gently as the limits say; from there other ways may open
     return IsStopped(V_B) ? result : Brake(costmap, X_MB, V_B);
   }
@@ -210,8 +266,9 @@ DwaResult DwaPlanner::Impl::Drive(const Costmap& costmap, const geometry::Pose2&
   return result;
 }
 
-/// On the way back to a goal that it missed the base may turn as slowly as it takes to change the
-/// sense of a turn; else one with a low acceleration turns on as it began, the long way round.
+/// On the way back to a goal that it missed, where nothing but the window leads there, the base may
+/// turn as slowly as it takes to change the sense of a turn; else one with a low acceleration turns
+/// on as it began, the long way round.
 std::vector<geometry::Twist2> DwaPlanner::Impl::NextVelocities(const geometry::Twist2& V_B) const {
   DwaParams params = params_;
   if (IsReturning()) {
@@ -322,15 +379,31 @@ DwaResult DwaPlanner::Impl::AtGoal(const Costmap& costmap, const geometry::Pose2
                                    const geometry::Twist2& V_B) {
   guard_.Reset();
   if (std::abs(YawError(X_MB)) > params_.yaw_goal_tolerance) {
+    if (!turning_) turning_at_ = 0.0;
     turning_ = turning_ || IsStopped(V_B);
     return turning_ ? Turn(costmap, X_MB, V_B) : Brake(costmap, X_MB, V_B);
   }
   turning_ = false;
   if (!IsStopped(V_B)) return Brake(costmap, X_MB, V_B);
   if (GoalDistance(X_MB) <= params_.xy_goal_tolerance) return {DwaStatus::kGoalReached, {}, 0};
-  has_missed_ = true;
+  ++num_missed_;
   LeaveGoal();  // it came to rest too far off after all
+  if (num_missed_ > 1 || !CanMoveSideways() || !IsBrisk()) {
+    approach_.BeginFrom(X_MB, X_MGoal_);
+    if (const auto result = CloseIn(costmap, X_MB, V_B)) return *result;
+  }
   return Drive(costmap, X_MB, V_B);
+}
+
+/// From full speed it comes to rest well within the tolerances, as with the PR2's sets: then the
+/// window brings it back to a goal that it missed once.
+bool DwaPlanner::Impl::IsBrisk() const {
+  const double way = 0.5 * limits_.max_linear_velocity *
+                     TimeToStop(limits_.max_linear_velocity, limits_.max_linear_acceleration);
+  const double turn = 0.5 * limits_.max_angular_velocity *
+                      TimeToStop(limits_.max_angular_velocity, limits_.max_angular_acceleration);
+  return way <= kBriskShare * params_.xy_goal_tolerance &&
+         turn <= kBriskTurns * params_.yaw_goal_tolerance;
 }
 
 DwaResult DwaPlanner::Impl::Brake(const Costmap& costmap, const geometry::Pose2& X_MB,
@@ -339,7 +412,7 @@ DwaResult DwaPlanner::Impl::Brake(const Costmap& costmap, const geometry::Pose2&
   const double to_stop = std::max(TimeToStop(Speed(braked), limits_.max_linear_acceleration),
                                   TimeToStop(braked.wz, limits_.max_angular_acceleration));
   // Slowing down evenly covers half the way of driving on.
-  if (!sweep_.IsFree(costmap, X_MB, braked, params_.control_period + 0.5 * to_stop)) {
+  if (!Exact().IsFree(costmap, X_MB, braked, params_.control_period + 0.5 * to_stop)) {
     return {DwaStatus::kNoValidTrajectory, {}, 1};
   }
   return {DwaStatus::kDriving, braked, 1};
@@ -348,24 +421,34 @@ DwaResult DwaPlanner::Impl::Brake(const Costmap& costmap, const geometry::Pose2&
 DwaResult DwaPlanner::Impl::Turn(const Costmap& costmap, const geometry::Pose2& X_MB,
                                  const geometry::Twist2& V_B) {
   if (room_) return MakeRoom(costmap, X_MB, V_B);
-  std::optional<double> turn = FreeTurn(costmap, X_MB, turn_sign_ == 0 ? &wide_sweep_ : &sweep_);
+  std::optional<double> turn;
+  if (turn_sign_ != 0) turn = FreeTurn(costmap, X_MB, &Exact());
+  for (std::size_t i = 0; turn_sign_ == 0 && i + 1 < sweeps_.size() && !turn; ++i)
+    turn = FreeTurn(costmap, X_MB, &sweeps_[i]);
   if (!turn) {
     turn_sign_ = 0;
     const DwaResult aside = MakeRoom(costmap, X_MB, V_B);
     if (aside.status == DwaStatus::kDriving) return aside;
-    turn = FreeTurn(costmap, X_MB, &sweep_);
+    turn = FreeTurn(costmap, X_MB, &Exact());
     if (!turn) return aside;
   }
   turn_sign_ = *turn < 0.0 ? -1 : 1;
-  const double angle = std::abs(*turn);
+  const double change = limits_.max_angular_acceleration * params_.control_period;
+  geometry::Twist2 velocity = Braked(V_B, limits_, params_.control_period);
+  if (CanMoveSideways()) {
+    velocity.wz = Approach(V_B.wz, turn_sign_ * TurningSpeed(std::abs(*turn)), change);
+  } else {
+    velocity.wz = Ramped(turning_at_, V_B.wz, SpeedOfTurn(*turn, limits_), change);
+  }
+  turning_at_ = velocity.wz;
+  return {DwaStatus::kDriving, velocity, 1};
+}
+
+/// [rad/s] As the original's.
+double DwaPlanner::Impl::TurningSpeed(double angle) const {
   const double slowest = std::min(params_.min_angular_velocity, limits_.max_angular_velocity);
   const double stoppable = std::sqrt(2.0 * limits_.max_angular_acceleration * angle);
-  const double speed =
-      std::min({std::max(angle, slowest), stoppable, limits_.max_angular_velocity});
-  geometry::Twist2 velocity = Braked(V_B, limits_, params_.control_period);
-  velocity.wz = Approach(V_B.wz, turn_sign_ * speed,
-                         limits_.max_angular_acceleration * params_.control_period);
-  return {DwaStatus::kDriving, velocity, 1};
+  return std::min({std::max(angle, slowest), stoppable, limits_.max_angular_velocity});
 }
 
 /// The signed angle to the goal's heading through which the robot can turn here without contact:
@@ -432,7 +515,7 @@ std::optional<Eigen::Vector2d> DwaPlanner::Impl::FindRoom(const Costmap& costmap
     if ((X_MGoal_.position() - place).norm() > radius) continue;
     if ((X_MB.position() - place).norm() <= kRoomReached) continue;
     if (!IsWayFree(costmap, X_MB, place)) continue;
-    if (FreeTurn(costmap, {place.x(), place.y(), X_MB.yaw}, &wide_sweep_)) return place;
+    if (FreeTurn(costmap, {place.x(), place.y(), X_MB.yaw}, &Wide())) return place;
   }
   return std::nullopt;
 }
@@ -440,7 +523,7 @@ std::optional<Eigen::Vector2d> DwaPlanner::Impl::FindRoom(const Costmap& costmap
 bool DwaPlanner::Impl::IsWayFree(const Costmap& costmap, const geometry::Pose2& X_MB,
                                  const Eigen::Vector2d& p_MTo) {
   const Eigen::Vector2d way = X_MB.Inverse() * p_MTo;  // driven in one unit of time
-  return sweep_.IsFree(costmap, X_MB, {way.x(), way.y(), 0.0}, 1.0);
+  return Exact().IsFree(costmap, X_MB, {way.x(), way.y(), 0.0}, 1.0);
 }
 
 // ---- the planner ------------------------------------------------------------------------------
@@ -468,6 +551,14 @@ void DwaPlanner::SetMotionSet(const robot::MotionSet& limits) {
                   IsUsable(limits.max_angular_acceleration),
               "limits of motion are finite and not negative");
   impl_->limits_ = limits;
+  impl_->approach_.SetMotionSet(limits);
+}
+
+void DwaPlanner::SetMargin(double margin) {
+  HIRES_CHECK(IsUsable(margin), "a margin is finite and not negative");
+  if (margin == impl_->margin_) return;
+  impl_->margin_ = margin;
+  impl_->sweeps_ = SweepsOf(impl_->params_, impl_->footprint_, margin);
 }
 
 DwaResult DwaPlanner::Update(const Costmap& costmap, const geometry::Pose2& X_MB,

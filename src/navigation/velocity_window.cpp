@@ -2,20 +2,36 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "hires/base/check.h"
 
 namespace hires::navigation {
 namespace {
 
+constexpr double kFollowed = 3.0;  // changes that a base may lag behind its commands
+
+// Of a base that cannot move sideways, which has no samples of that: neighbours lie no farther
+// apart, or it has so many.
+constexpr double kFineSpacing = 0.05;  // [m/s, rad/s]
+constexpr int kMostSpeeds = 20, kMostTurns = 40;
+
 constexpr double kSlack = 1e-4;  // [m/s, rad/s] so that a limit itself is never rounded away
 
-/// Samples of one axis: reachable from `now` by `change` at most, within lower..upper.
-std::vector<double> Axis(double now, double change, double lower, double upper, int count) {
-  const double from = std::clamp(now - change, lower, upper);
-  const double to = std::clamp(now + change, lower, upper);
-  return SampleAxis(from, to, count);
-}
+/// What is reachable from `now` by `change` at most, within lower..upper.
+struct Range {
+  double from, to;
+
+  Range(double now, double change, double lower, double upper)
+      : from(std::clamp(now - change, lower, upper)), to(std::clamp(now + change, lower, upper)) {}
+
+  std::vector<double> Samples(int count) const { return SampleAxis(from, to, count); }
+  std::vector<double> FineSamples(int count, int most) const {
+    const int fine =
+        1 + static_cast<int>(std::ceil(std::min((to - from) / kFineSpacing, 1e3) - kSlack));
+    return Samples(std::max(count, std::min(fine, most)));
+  }
+};
 
 /// What counts as fast enough to be worth driving.
 struct SmallestUseful {
@@ -78,10 +94,14 @@ std::vector<geometry::Twist2> ReachableVelocities(const DwaParams& params,
   const double turning = limits.max_angular_velocity;
   const SmallestUseful smallest(params, limits, V_B);
   std::vector<geometry::Twist2> velocities;
-  const auto ys = Axis(V_B.vy, linear_change, -lateral, lateral, params.vy_samples);
-  const auto turns = Axis(V_B.wz, angular_change, -turning, turning, params.vtheta_samples);
-  for (double vx :
-       Axis(V_B.vx, linear_change, 0.0, limits.max_linear_velocity, params.vx_samples)) {
+  const Range forward(V_B.vx, linear_change, 0.0, limits.max_linear_velocity);
+  const Range turn(V_B.wz, angular_change, -turning, turning);
+  const bool is_fine = lateral == 0.0;
+  const auto ys = Range(V_B.vy, linear_change, -lateral, lateral).Samples(params.vy_samples);
+  const auto turns = is_fine ? turn.FineSamples(params.vtheta_samples, kMostTurns)
+                             : turn.Samples(params.vtheta_samples);
+  for (double vx : is_fine ? forward.FineSamples(params.vx_samples, kMostSpeeds)
+                           : forward.Samples(params.vx_samples)) {
     for (double vy : ys) {
       if (std::hypot(vx, vy) > limits.max_linear_velocity + kSlack) continue;
       for (double wz : turns) {
@@ -99,6 +119,16 @@ geometry::Twist2 Braked(const geometry::Twist2& V_B, const robot::MotionSet& lim
   const double scale = speed > 0.0 ? slower / speed : 0.0;
   const double turning = std::max(0.0, std::abs(V_B.wz) - limits.max_angular_acceleration * period);
   return {V_B.vx * scale, V_B.vy * scale, std::copysign(turning, V_B.wz)};
+}
+
+double TimeToStop(double velocity, double acceleration) {
+  return acceleration > 0.0 ? std::abs(velocity) / acceleration : 0.0;
+}
+
+double Ramped(double commanded, double measured, double wanted, double change) {
+  const double lag = kFollowed * change;
+  const double now = std::clamp(commanded, measured - lag, measured + lag);
+  return std::clamp(wanted, now - change, now + change);
 }
 
 }  // namespace hires::navigation

@@ -24,7 +24,8 @@ geometry::Pose2 PoseAfter(const geometry::Pose2& X_MB, const geometry::Twist2& V
 std::vector<double> SampleAxis(double lower, double upper, int count);
 
 /// The velocities that the base can reach within one control period and may drive: forward,
-/// sideways and turning within the limits. Velocities too small for the base to follow smoothly are
+/// sideways and turning within the limits; of a base that cannot move sideways so many that a brisk
+/// one has fine ones, too. Velocities too small for the base to follow smoothly are
 /// left out (slower than min_linear_velocity and turning slower than min_angular_velocity, both at
 /// once), unless the limits are so low that nothing else could be reached. A velocity that is out
 /// of the limits already, and cannot be brought back within one period, is asked to come back at
@@ -35,5 +36,13 @@ std::vector<geometry::Twist2> ReachableVelocities(const DwaParams& params,
 
 /// The velocity one control period later when braking as hard as the limits allow.
 geometry::Twist2 Braked(const geometry::Twist2& V_B, const robot::MotionSet& limits, double period);
+
+/// [s] A base that cannot brake counts as one that need not.
+double TimeToStop(double velocity, double acceleration);
+
+/// The next of a row of commands that go to `wanted` by `change` at most in a period. From the last
+/// command, for a base that lags would hardly be slowed down from what it was measured to do; but
+/// from no command that it did not follow.
+double Ramped(double commanded, double measured, double wanted, double change);
 
 }  // namespace hires::navigation

@@ -3,7 +3,10 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <iterator>
+#include <set>
 
 #include "hires/base/rng.h"
 #include "hires/geometry/angles.h"
@@ -77,6 +80,36 @@ TEST(ReachableVelocitiesTest, TooFastABaseIsAskedBackWithinTheLimits) {
   for (const auto& sample : ReachableVelocities({}, kSlow, {-0.5, 0.0, 0.0})) {
     EXPECT_EQ(sample.vx, 0.0);
   }
+}
+
+TEST(ReachableVelocitiesTest, TwoDrivenWheelsHaveFineSamplesHoweverBriskTheyAre) {
+  DwaParams params;
+  params.max_lateral_velocity = 0.0;
+  for (const double acceleration : {0.5, 2.5, 5.0, 50.0}) {
+    const robot::MotionSet limits{0.8, 1.5, acceleration, 2.0 * acceleration};
+    std::set<double> speeds, turns;
+    for (const auto& sample : ReachableVelocities(params, limits, {0.4, 0.0, 0.0})) {
+      speeds.insert(sample.vx);
+      turns.insert(sample.wz);
+    }
+    const auto widest = [](const std::set<double>& samples) {
+      double widest = 0.0;
+      for (auto a = samples.begin(), b = std::next(a); b != samples.end(); ++a, ++b)
+        widest = std::max(widest, *b - *a);
+      return widest;
+    };
+    EXPECT_LE(widest(speeds), 0.051) << acceleration;
+    EXPECT_LE(widest(turns), 0.08) << acceleration;
+    EXPECT_LE(speeds.size(), 20u);
+    EXPECT_LE(turns.size(), 41u);
+  }
+}
+
+TEST(RampedTest, GoesOnFromTheLastCommandWhileTheBaseFollows) {
+  EXPECT_NEAR(Ramped(0.5, 0.4, 1.0, 0.1), 0.6, 1e-12);
+  EXPECT_NEAR(Ramped(0.5, 0.0, 1.0, 0.1), 0.4, 1e-12) << "it did not follow";
+  EXPECT_NEAR(Ramped(0.5, 0.6, 0.0, 0.1), 0.4, 1e-12);
+  EXPECT_NEAR(Ramped(0.05, 0.06, 0.0, 0.1), 0.0, 1e-12);
 }
 
 TEST(ReachableVelocitiesTest, AnInertRobotCanStartAllTheSame) {

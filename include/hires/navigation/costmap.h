@@ -65,6 +65,9 @@ class Costmap {
   /// cost less than kInscribedCost. Nothing else changes, so that only ways out are opened.
   Costmap WithRoomFor(const geometry::Polygon& outline_M) const;
 
+  /// Likewise, but obstacles stay: a place that is nearer to them than ways should lead is reached.
+  Costmap WithAccessTo(const geometry::Polygon& outline_M) const;
+
   /// The same obstacles for a robot of another inscribed radius [m]; costs decay beyond it over the
   /// same distance. @pre >= 0
   Costmap WithInscribedRadius(double inscribed_radius) const;

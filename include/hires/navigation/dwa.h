@@ -54,10 +54,12 @@ struct DwaResult {
 /// the critics of dwa_local_planner: obstacles under the footprint, distance to the path and to the
 /// local goal of base and forward point, oscillation. At the goal's position it stops and turns; if
 /// the turn would touch something, it first creeps to a place within the goal's tolerance where it
-/// does not. Where it came to rest out of tolerance after all, for its believed place moved, it
-/// drives on; a base that cannot move sideways then stops well inside. No velocity is ever given
-/// whose footprint touches an obstacle, its interior included. The same calls give the same
-/// velocities. A copy goes on from the same state on its own.
+/// does not. A base that cannot move sideways stops well inside of the tolerance. Where it came to
+/// rest out of tolerance after all, for its believed place moved, a brisk base that moves sideways
+/// is brought back by the window; every other one, and that one if it misses again or swings beside
+/// its goal, creeps there straight, or turns, drives what is missing and turns back. No velocity is
+/// ever given whose footprint touches an obstacle, its interior included. The same calls give the
+/// same velocities. A copy goes on from the same state on its own.
 class DwaPlanner {
  public:
   /// @param footprint  Convex, padded, in the base frame [m].
@@ -70,6 +72,9 @@ class DwaPlanner {
   /// A new goal: its last pose. @pre not empty.
   void SetPath(const std::vector<geometry::Pose2>& path);
   void SetMotionSet(const robot::MotionSet& limits);  ///< @pre finite, >= 0
+  /// [m] From now on kept free round the footprint where possible; half of it where that is not,
+  /// and else what is kept free in any case. @pre finite, >= 0
+  void SetMargin(double margin);
 
   /// One control cycle.
   /// kDriving: drive at the velocity given; if every way on leads to contact, it brakes within the

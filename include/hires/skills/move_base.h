@@ -40,6 +40,15 @@ struct MoveBaseParams {
   /// Beside furniture the robot goes by the place where that laser sees it; none: by the told one.
   std::optional<SeenPlaceParams> seen_place;
   LostParams lost;
+  /// [m] What drives by the map alone keeps so far from all that is in it, for its place may err;
+  /// less where the way, its beginning or its end leaves no room for that.
+  double place_margin{0.0};
+};
+
+/// A costmap in which ways keep a margin [m] from everything.
+struct MarginMap {
+  double margin;
+  std::shared_ptr<const navigation::Costmap> costmap;
 };
 
 /// What a driving skill knows about where it drives; constant, shared by all skills of a scene.
@@ -49,6 +58,7 @@ struct DrivingContext {
   geometry::Polygon footprint;  ///< padded; of the posture for driving
   geometry::Polygon base;       ///< outline of what drives, without arms: robot::BaseOutlineOf
   MoveBaseParams params;
+  std::vector<MarginMap> with_margin;  ///< the widest first; none: nothing but the map's own
 
   std::optional<MapByPlane> by_plane;           ///< with an obstacle layer
   std::shared_ptr<const SeenPlace> seen_place;  ///< of a world, where asked for; else null
@@ -91,13 +101,15 @@ class MoveBase : public Skill {
   geometry::Twist2 LookAround(const robot::Observation& observation);
   void Begin(const robot::Observation& observation);
   std::optional<Status> Plan(const robot::Observation& observation);
-  navigation::PathStatus FindPath(const navigation::Costmap& costmap, const geometry::Pose2& X_MB);
+  navigation::PathStatus FindPath(const navigation::Costmap& costmap, const geometry::Pose2& X_MB,
+                                  double margin = 0.0);
   bool IsAtGoal(const robot::Observation& observation) const;
   void PlanAnewIfStuck(const robot::Observation& observation);
   bool NoteMotion(const robot::Observation& observation);
   std::shared_ptr<const navigation::Costmap> Completed(
       const std::shared_ptr<const navigation::Costmap>& map, const robot::Observation& observation,
       const LocalCostmap* seen = nullptr) const;
+  bool PlanWithMargin(const robot::Observation& observation);
   navigation::Costmap MapWithMarks(const robot::Observation& observation) const;
   void Look(const robot::Observation& observation);
   Status Recover(const robot::Observation& observation);
@@ -113,12 +125,15 @@ class MoveBase : public Skill {
   LostWatch lost_;
   bool has_begun_{false};
   std::shared_ptr<const std::vector<geometry::Pose2>> path_;  // null: not planned yet
-  std::shared_ptr<const navigation::Costmap> now_;            // what it drove by at the last look
-  geometry::Pose2 X_MBNow_;                                   // and where the robot was
-  double last_valid_{0.0};    // [s] when a valid trajectory was last found
-  double last_plan_{0.0};     // [s]
-  geometry::Pose2 X_MMoved_;  // where it last counted as having moved
-  double last_moved_{0.0};    // [s]
+  std::size_t first_margin_{0};  // of those with which ways are looked for
+  /// By which it was planned with a margin; null: without.
+  std::shared_ptr<const navigation::Costmap> with_margin_;
+  std::shared_ptr<const navigation::Costmap> now_;  // what it drove by at the last look
+  geometry::Pose2 X_MBNow_;                         // and where the robot was
+  double last_valid_{0.0};                          // [s] when a valid trajectory was last found
+  double last_plan_{0.0};                           // [s]
+  geometry::Pose2 X_MMoved_;                        // where it last counted as having moved
+  double last_moved_{0.0};                          // [s]
   int oscillations_{0};
   std::ptrdiff_t least_left_{0};  // so many poses of the path were left; 0: it is new
   double last_nearer_{0.0};       // [s] when that became less

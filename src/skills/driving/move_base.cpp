@@ -94,6 +94,13 @@ DrivingContext ContextOf(const world::OccupancyGrid& map, const robot::Robot& ro
   context.footprint = footprint;
   if (params.obstacle_layer || params.seen_place) context.base = robot::BaseOutlineOf(robot);
   context.params = possible;
+  if (params.obstacle_layer || params.place_margin == 0.0) return context;
+  for (const double share : {1.0, 0.5}) {
+    const double margin = share * params.place_margin;
+    const double radius = geometry::InscribedRadius(footprint) + margin + params.map_resolution;
+    context.with_margin.push_back({margin, std::make_shared<const navigation::Costmap>(
+                                               context.costmap->WithInscribedRadius(radius))});
+  }
   return context;
 }
 
@@ -211,7 +218,8 @@ void MoveBase::Begin(const robot::Observation& observation) {
   costmap_ = context_->costmap;
 }
 
-navigation::PathStatus MoveBase::FindPath(const navigation::Costmap& costmap, const Pose2& X_MB) {
+navigation::PathStatus MoveBase::FindPath(const navigation::Costmap& costmap, const Pose2& X_MB,
+                                          double margin) {
   if (!car_) {
     auto found = navigation::PlanPath(costmap, X_MB, X_MGoal_, context_->params.planner);
     if (found.status != navigation::PathStatus::kFound) return found.status;
@@ -223,7 +231,7 @@ navigation::PathStatus MoveBase::FindPath(const navigation::Costmap& costmap, co
   navigation::CarPathParams params;
   params.costs = context_->params.planner;
   auto found =
-      navigation::PlanCarPath(costmap, footprint_, X_MB, X_MGoal_,
+      navigation::PlanCarPath(costmap, geometry::Padded(footprint_, margin), X_MB, X_MGoal_,
                               context_->robot->profile.base_controller.min_turning_radius, params);
   if (found.status != navigation::PathStatus::kFound) return found.status;
   std::vector<Pose2> poses;
@@ -237,6 +245,28 @@ navigation::Costmap MoveBase::MapWithMarks(const robot::Observation& observation
   return Completed(costmap_, observation)->WithObstaclesAt(sensed_->Marks(observation));
 }
 
+/// On the way that keeps farthest from all that is in the map, for the robot's place errs and
+/// nothing shows it how far; false where there is no such way. Where the robot stands, and its
+/// goal, may be nearer to something than ways lead.
+bool MoveBase::PlanWithMargin(const robot::Observation& observation) {
+  with_margin_.reset();
+  local_.SetMargin(0.0);
+  if (footprint_ != context_->footprint) return false;  // its arms have a map of their own
+  for (std::size_t i = first_margin_; i < context_->with_margin.size(); ++i) {
+    const MarginMap& map = context_->with_margin[i];
+    auto open = std::make_shared<const navigation::Costmap>(
+        map.costmap->WithAccessTo(geometry::Transformed(observation.X_MB, footprint_))
+            .WithAccessTo(geometry::Transformed(X_MGoal_, footprint_)));
+    auto now = Completed(open, observation);
+    if (FindPath(*now, observation.X_MB, map.margin) != navigation::PathStatus::kFound) continue;
+    local_.SetMargin(map.margin);
+    with_margin_ = std::move(open);
+    now_ = std::move(now);
+    return true;
+  }
+  return false;
+}
+
 /// Round what the laser sees, if that leaves a way: where map and marks lie beside each other, for
 /// a localisation errs, narrow places are closed that are not.
 std::optional<Status> MoveBase::Plan(const robot::Observation& observation) {
@@ -244,7 +274,9 @@ std::optional<Status> MoveBase::Plan(const robot::Observation& observation) {
       FindPath(MapWithMarks(observation), observation.X_MB) == navigation::PathStatus::kFound) {
     return std::nullopt;
   }
-  const auto map = sensed_ ? Completed(costmap_, observation) : now_;
+  if (PlanWithMargin(observation)) return std::nullopt;
+  const auto map = Completed(costmap_, observation);
+  if (!sensed_) now_ = map;
   switch (FindPath(*map, observation.X_MB)) {
     case navigation::PathStatus::kStartBlocked:
       return Failed(base::FailureCode::kStartBlocked);
@@ -266,7 +298,7 @@ void MoveBase::PlanAnewIfStuck(const robot::Observation& observation) {
   };
   // At its goal it turns and corrects.
   const bool is_there = apart(X_MGoal_) <= 2.0 * context_->params.local.xy_goal_tolerance;
-  if (!sensed_ || car_ || is_there) return;
+  if ((!sensed_ && !with_margin_) || car_ || is_there) return;
   const auto nearest =
       std::min_element(path_->begin(), path_->end(),
                        [&](const Pose2& a, const Pose2& b) { return apart(a) < apart(b); });
@@ -277,7 +309,12 @@ void MoveBase::PlanAnewIfStuck(const robot::Observation& observation) {
   }
   if (observation.time - last_nearer_ < context_->params.progress_timeout) return;
   last_nearer_ = observation.time;
-  FindPath(MapWithMarks(observation), observation.X_MB);
+  if (sensed_) {
+    FindPath(MapWithMarks(observation), observation.X_MB);
+  } else {  // the way has room for the margin, the robot on its arcs has not
+    ++first_margin_;
+    Plan(observation);
+  }
 }
 
 /// False when the robot has been going to and fro for too long.
@@ -332,7 +369,7 @@ std::shared_ptr<const navigation::Costmap> MoveBase::Completed(
 void MoveBase::Look(const robot::Observation& observation) {
   now_.reset();  // so that a rollout holds one copy of the map, not two
   now_ = sensed_ ? Completed(sensed_->Look(observation), observation, &*sensed_)
-                 : Completed(costmap_, observation);
+                 : Completed(with_margin_ ? with_margin_ : costmap_, observation);
   X_MBNow_ = observation.X_MB;
 }
 

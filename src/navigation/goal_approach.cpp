@@ -1,0 +1,207 @@
+#include "navigation/goal_approach.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "hires/geometry/angles.h"
+#include "hires/navigation/car_follower.h"
+#include "navigation/velocity_window.h"
+
+namespace hires::navigation {
+namespace {
+
+using Eigen::Vector2d;
+using geometry::Pose2;
+using geometry::Twist2;
+
+constexpr double kNear = 3.0;              // times the goal's tolerance
+constexpr double kPatience = 2.0;          // [s]
+constexpr double kCloser = 0.01;           // [m] what counts as progress
+constexpr double kTurnWeight = 0.1;        // [m/rad] of turns towards the goal
+constexpr double kReached = 0.01;          // [m] before the place, or beyond it
+constexpr double kAimed = 0.03;            // [rad]
+constexpr double kSpeed = 0.3;             // [m/s] at most
+constexpr double kDeceleration = 0.5;      // [m/s^2] at most ...
+constexpr double kTurnDeceleration = 1.0;  // [rad/s^2]
+constexpr double kBrakingShare = 0.5;      // of the motion set's, so that what lags keeps up
+constexpr double kReaction = 0.2;          // [s] from what is seen to what the wheels do of it
+
+}  // namespace
+
+GoalWatch::GoalWatch(const DwaParams& params)
+    : near_(kNear * params.xy_goal_tolerance), period_(params.control_period) {
+  Reset();
+}
+
+void GoalWatch::Reset() {
+  least_ = std::numeric_limits<double>::infinity();
+  since_ = 0.0;
+}
+
+bool GoalWatch::Swings(const Pose2& X_MB, const Vector2d& p_MGoal) {
+  const Vector2d p_BGoal = X_MB.Inverse() * p_MGoal;
+  if (p_BGoal.norm() > near_) {
+    Reset();
+    return false;
+  }
+  const double left = p_BGoal.norm() + kTurnWeight * std::abs(std::atan2(p_BGoal.y(), p_BGoal.x()));
+  since_ += period_;
+  if (left < least_ - kCloser) {
+    least_ = left;
+    since_ = 0.0;
+  }
+  return since_ > kPatience;
+}
+
+double SpeedOfTurn(double angle, const robot::MotionSet& limits) {
+  const double deceleration =
+      std::min(kTurnDeceleration, kBrakingShare * limits.max_angular_acceleration);
+  const double speed = std::min(ApproachSpeed(std::abs(angle), deceleration, kReaction),
+                                limits.max_angular_velocity);
+  return std::copysign(speed, angle);
+}
+
+GoalApproach::GoalApproach(const DwaParams& params) : params_(params) {}
+
+void GoalApproach::BeginTo(const Pose2& X_MGoal) {
+  X_MGoal_ = X_MGoal;
+  missing_M_.reset();
+  commanded_ = {};
+  stage_ = Stage::kStopping;
+}
+
+void GoalApproach::BeginFrom(const Pose2& X_MB, const Pose2& X_MGoal) {
+  BeginTo(X_MGoal);
+  missing_M_ = X_MGoal.position() - X_MB.position();
+}
+
+bool GoalApproach::IsStopped(const Twist2& V_B) const {
+  return std::hypot(V_B.vx, V_B.vy) <= params_.stopped_linear_velocity &&
+         std::abs(V_B.wz) <= params_.stopped_angular_velocity;
+}
+
+Vector2d GoalApproach::Place(const Pose2& X_MB) const {
+  return missing_M_ ? Vector2d(X_MB.position() + *missing_M_) : X_MGoal_.position();
+}
+
+/// The signed angle to a heading through which the base can turn where it stands: the shorter way,
+/// else the longer one.
+std::optional<double> GoalApproach::FreeTurn(const Costmap& costmap, const Pose2& X_MB, double yaw,
+                                             SweptFootprint* sweep) const {
+  const double turn = geometry::WrapToPi(yaw - X_MB.yaw);
+  for (const double angle : {turn, turn - std::copysign(2.0 * geometry::kPi, turn)}) {
+    if (sweep->IsFree(costmap, X_MB, {0.0, 0.0, std::copysign(1.0, angle)}, std::abs(angle))) {
+      return angle;
+    }
+  }
+  return std::nullopt;
+}
+
+/// How it goes there: of front and back what takes less turning, before and after. False if
+/// something is in the way, or it could not turn there.
+bool GoalApproach::Choose(const Costmap& costmap, const Pose2& X_MB, SweptFootprint* sweep) {
+  p_MTo_ = Place(X_MB);
+  const Vector2d way_M = p_MTo_ - X_MB.position();
+  if (CanMoveSideways()) {
+    const Vector2d way_B = X_MB.Inverse() * p_MTo_;
+    yaw_ = X_MB.yaw;
+    sign_ = 0.0;
+    return sweep->IsFree(costmap, X_MB, {way_B.x(), way_B.y(), 0.0}, 1.0);
+  }
+  double least = std::numeric_limits<double>::infinity();
+  for (const double side : {0.0, geometry::kPi}) {
+    const double yaw = geometry::WrapToPi(std::atan2(way_M.y(), way_M.x()) + side);
+    const auto turn = FreeTurn(costmap, X_MB, yaw, sweep);
+    if (!turn) continue;
+    const double ahead = side == 0.0 ? way_M.norm() : -way_M.norm();
+    if (!sweep->IsFree(costmap, {X_MB.x, X_MB.y, yaw}, {ahead, 0.0, 0.0}, 1.0)) continue;
+    const auto last = FreeTurn(costmap, {p_MTo_.x(), p_MTo_.y(), yaw}, X_MGoal_.yaw, sweep);
+    if (!last || std::abs(*turn) + std::abs(*last) >= least) continue;
+    least = std::abs(*turn) + std::abs(*last);
+    yaw_ = yaw;
+    sign_ = *turn < 0.0 ? -1.0 : 1.0;
+  }
+  return std::isfinite(least);
+}
+
+/// A turn begun is kept while it is far from done.
+double GoalApproach::TurnLeft(double yaw) const {
+  const double turn = geometry::WrapToPi(yaw_ - yaw);
+  const bool is_long = std::abs(turn) > 0.5 * geometry::kPi && turn * sign_ < 0.0;
+  return is_long ? turn + sign_ * 2.0 * geometry::kPi : turn;
+}
+
+Twist2 GoalApproach::Turn(const Pose2& X_MB, const Twist2& V_B) const {
+  Twist2 velocity = Braked(V_B, limits_, params_.control_period);
+  velocity.wz = Ramped(commanded_.wz, V_B.wz, SpeedOfTurn(TurnLeft(X_MB.yaw), limits_),
+                       limits_.max_angular_acceleration * params_.control_period);
+  return velocity;
+}
+
+/// None: it is there.
+std::optional<Twist2> GoalApproach::Drive(const Pose2& X_MB, const Twist2& V_B) const {
+  const Vector2d way_B = X_MB.Inverse() * p_MTo_;
+  Vector2d wanted = way_B;
+  if (!CanMoveSideways()) {  // along its line: what lies beside it is a few mm
+    const Vector2d line(std::cos(yaw_), std::sin(yaw_));
+    wanted = {line.dot(p_MTo_ - X_MB.position()), 0.0};
+  }
+  const double left = wanted.norm();
+  if (left <= kReached) return std::nullopt;
+  const double deceleration =
+      std::min(kDeceleration, kBrakingShare * limits_.max_linear_acceleration);
+  const double most = CanMoveSideways() ? std::min(kSpeed, params_.max_lateral_velocity) : kSpeed;
+  const double speed =
+      std::min({ApproachSpeed(left, deceleration, kReaction), most, limits_.max_linear_velocity});
+  wanted *= speed / left;
+  const double change = limits_.max_linear_acceleration * params_.control_period;
+  const double turning =
+      Ramped(commanded_.wz, V_B.wz, SpeedOfTurn(geometry::WrapToPi(yaw_ - X_MB.yaw), limits_),
+             limits_.max_angular_acceleration * params_.control_period);
+  return Twist2{Ramped(commanded_.vx, V_B.vx, wanted.x(), change),
+                Ramped(commanded_.vy, V_B.vy, wanted.y(), change), turning};
+}
+
+/// [s] Braking evenly covers half the way of driving on.
+double GoalApproach::Stopping(const Twist2& V_B) const {
+  return params_.control_period +
+         0.5 * std::max(TimeToStop(std::hypot(V_B.vx, V_B.vy), limits_.max_linear_acceleration),
+                        TimeToStop(V_B.wz, limits_.max_angular_acceleration));
+}
+
+GoalApproach::Step GoalApproach::Update(const Costmap& costmap, const Pose2& X_MB,
+                                        const Twist2& V_B, SweptFootprint* sweep) {
+  Twist2 velocity = Braked(V_B, limits_, params_.control_period);
+  if (stage_ == Stage::kStopping && IsStopped(V_B)) {
+    if (!Choose(costmap, X_MB, sweep)) {
+      End();
+      return {State::kBlocked, {}};
+    }
+    stage_ = CanMoveSideways() ? Stage::kDriving : Stage::kTurning;
+  }
+  if (stage_ == Stage::kTurning) {
+    if (std::abs(TurnLeft(X_MB.yaw)) <= kAimed) {
+      stage_ = Stage::kDriving;
+      p_MTo_ = Place(X_MB);
+    } else {
+      velocity = Turn(X_MB, V_B);
+    }
+  }
+  if (stage_ == Stage::kDriving) {
+    const auto next = Drive(X_MB, V_B);
+    if (!next) {
+      End();
+      return {State::kArrived, {}};
+    }
+    velocity = *next;
+  }
+  if (sweep->IsFree(costmap, X_MB, velocity, Stopping(velocity))) {
+    commanded_ = velocity;
+    return {State::kDriving, velocity};
+  }
+  End();
+  return {State::kBlocked, {}};
+}
+
+}  // namespace hires::navigation

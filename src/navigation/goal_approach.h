@@ -1,0 +1,85 @@
+#pragma once
+
+#include <optional>
+
+#include "hires/geometry/pose.h"
+#include "hires/navigation/dwa.h"
+#include "navigation/swept_footprint.h"
+
+namespace hires::navigation {
+
+/// Notices a base that swings beside its goal: near it, it has come no nearer and turned no further
+/// towards it for some time. To be told once in a control cycle. A value.
+class GoalWatch {
+ public:
+  explicit GoalWatch(const DwaParams& params);
+
+  bool Swings(const geometry::Pose2& X_MB, const Eigen::Vector2d& p_MGoal);
+  void Reset();
+
+ private:
+  double near_;    // [m]
+  double period_;  // [s]
+  double least_;   // [m] that remained so far, turns included
+  double since_;   // [s]
+};
+
+/// [rad/s] With the sign of an angle [rad]: how fast a base that lags may turn that has so far to
+/// go.
+double SpeedOfTurn(double angle, const robot::MotionSet& limits);
+
+/// Brings a base from nearby to the place of its goal without sampling velocities, of which each
+/// may lead past it. A base that moves sideways creeps there as it is headed; another one turns its
+/// front or its back to the place, drives there straight, and leaves the turn to the goal's heading
+/// to the caller. Only where the footprint's way is free. A value.
+class GoalApproach {
+ public:
+  explicit GoalApproach(const DwaParams& params);
+
+  void SetMotionSet(const robot::MotionSet& limits) { limits_ = limits; }
+
+  /// To the goal, as far as its place is known on the way.
+  void BeginTo(const geometry::Pose2& X_MGoal);
+  /// The base stands headed as at its goal and lacks what lies between. It drives just that far: as
+  /// it turns, what its believed place errs by turns with it, and comes back with the heading.
+  void BeginFrom(const geometry::Pose2& X_MB, const geometry::Pose2& X_MGoal);
+  void End() { stage_ = Stage::kNone; }
+  bool is_active() const { return stage_ != Stage::kNone; }
+
+  enum class State { kDriving, kArrived, kBlocked };
+  struct Step {
+    State state;
+    geometry::Twist2 velocity;  ///< zero unless driving
+  };
+  /// One control cycle. It ends where it has arrived, or something is in its way.
+  /// @pre is_active()
+  Step Update(const Costmap& costmap, const geometry::Pose2& X_MB, const geometry::Twist2& V_B,
+              SweptFootprint* sweep);
+
+ private:
+  enum class Stage { kNone, kStopping, kTurning, kDriving };
+
+  bool CanMoveSideways() const { return params_.max_lateral_velocity > 0.0; }
+  bool IsStopped(const geometry::Twist2& V_B) const;
+  Eigen::Vector2d Place(const geometry::Pose2& X_MB) const;
+  bool Choose(const Costmap& costmap, const geometry::Pose2& X_MB, SweptFootprint* sweep);
+  std::optional<double> FreeTurn(const Costmap& costmap, const geometry::Pose2& X_MB, double yaw,
+                                 SweptFootprint* sweep) const;
+  double TurnLeft(double yaw) const;
+  geometry::Twist2 Turn(const geometry::Pose2& X_MB, const geometry::Twist2& V_B) const;
+  std::optional<geometry::Twist2> Drive(const geometry::Pose2& X_MB,
+                                        const geometry::Twist2& V_B) const;
+  double Stopping(const geometry::Twist2& V_B) const;
+
+  DwaParams params_;
+  robot::MotionSet limits_;
+  Stage stage_{Stage::kNone};
+  geometry::Pose2 X_MGoal_;
+  std::optional<Eigen::Vector2d> missing_M_;  // [m] to be driven; none: to the goal's place
+  Eigen::Vector2d p_MTo_{0.0, 0.0};           // while it drives
+  double yaw_{0.0};                           // [rad] with which it drives
+  double sign_{0.0};                          // of the turn to it
+  geometry::Twist2 commanded_;                // in the last cycle
+};
+
+}  // namespace hires::navigation
