@@ -1,0 +1,97 @@
+// Whole drives in the simulator: over bases, motion sets, legs and what imagination draws.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <string>
+
+#include "skills/played_legs.h"
+#include "support/rounds.h"
+
+namespace hires::skills::whole_drives_test {
+namespace {
+
+using geometry::Pose2;
+using robot::Drive;
+using test_support::Leg;
+using test_support::PlayedLeg;
+
+struct Base {
+  std::string name;
+  robot::Robot robot;
+};
+
+/// @param lag  [s] and the loop [rad/s] between commands and wheels; 0: none.
+Base BaseOf(const std::string& name, Drive drive, double lag, double loop) {
+  Base base{name, test_support::BoxOnWheels(drive)};
+  robot::BaseControllerParams& controller = base.robot.profile.base_controller;
+  controller.command_lag = lag;
+  controller.loop_frequency = loop;
+  controller.loop_damping = 0.8;
+  return base;
+}
+
+std::vector<Base> Bases() {
+  return {BaseOf("differential", Drive::kDifferential, 0.0, 0.0),
+          BaseOf("skid_steer", Drive::kDifferential, 0.05, 10.0),
+          BaseOf("car", Drive::kCarLike, 0.0, 0.0),
+          BaseOf("mecanum", Drive::kOmnidirectional, 0.03, 15.0),
+          BaseOf("omnidirectional", Drive::kOmnidirectional, 0.0, 0.0)};
+}
+
+/// Of gentle and brisk bases, 0.5 to 5 m/s^2; one in ten follows at once.
+robot::MotionSet DrawnMotionSet(base::Rng* rng) {
+  const double acceleration =
+      rng->Bernoulli(0.1) ? 50.0 : 0.5 * std::pow(10.0, rng->Uniform(0.0, 1.0));
+  const double speed = rng->Uniform(0.25, std::min(0.8, 0.25 + 0.5 * acceleration));
+  return {speed, rng->Uniform(0.6, 1.5), acceleration, 2.0 * acceleration};
+}
+
+Pose2 DrawnPlace(const DrivingContext& context, double width, double height, base::Rng* rng) {
+  const double room = geometry::CircumscribedRadius(context.footprint) + 0.15;
+  geometry::Polygon circle;
+  for (int i = 0; i < 16; ++i)
+    circle.emplace_back(room * std::cos(i * geometry::kPi / 8),
+                        room * std::sin(i * geometry::kPi / 8));
+  for (;;) {
+    const Pose2 X_MB{rng->Uniform(0.0, width), rng->Uniform(0.0, height),
+                     rng->Uniform(-geometry::kPi, geometry::kPi)};
+    if (context.costmap->FootprintCost(circle, X_MB) < navigation::kLethalCost) return X_MB;
+  }
+}
+
+/// Goals of every heading; one in four faces back along its way.
+Leg DrawnLeg(const DrivingContext& context, double width, double height, base::Rng* rng) {
+  Leg leg{DrawnPlace(context, width, height, rng), DrawnPlace(context, width, height, rng)};
+  if (!rng->Bernoulli(0.25)) return leg;
+  const Eigen::Vector2d back = leg.X_MStart.position() - leg.X_MGoal.position();
+  leg.X_MGoal.yaw = std::atan2(back.y(), back.x()) + rng->Uniform(-0.3, 0.3);
+  return leg;
+}
+
+/// No drive swings at its goal or runs out of time.
+void ExpectArrivals(const world::World& world, double width, double height, int count) {
+  int kind = 0;
+  for (const Base& base : Bases()) {
+    const auto scene = simulation::MakeScene(world, base.robot);
+    const auto context =
+        std::make_shared<const DrivingContext>(MakeDrivingContext(world, base.robot, {}));
+    const base::Rng root = base::Rng(23).Fork(kind++);
+    for (int i = 0; i < count; ++i) {
+      base::Rng rng = root.Fork(i);
+      const robot::MotionSet set = DrawnMotionSet(&rng);
+      const Leg leg = DrawnLeg(*context, width, height, &rng);
+      const double longest = test_support::LongestFor(*context, leg, set);
+      if (longest == 0.0) continue;  // a car has no way there
+      const PlayedLeg played = test_support::PlayLeg(scene, context, leg, set, rng.Fork(7));
+      EXPECT_EQ(ToString(played.status.failure), "") << base.name << " " << i;
+      EXPECT_LE((played.X_MB.position() - leg.X_MGoal.position()).norm(), 0.2 + 0.13);
+    }
+  }
+}
+
+TEST(WholeDrivesTest, OnAnEmptyFloorEachArrives) {
+  ExpectArrivals(test_support::EmptyFloor({8.0, 8.0}), 8.0, 8.0, hires::test_support::Rounds(200));
+}
+
+}  // namespace
+}  // namespace hires::skills::whole_drives_test
