@@ -19,6 +19,7 @@
 #include "hires/world/object_catalogue.h"
 #include "hires/world/occupancy_grid.h"
 #include "imagination/physics_hash.h"
+#include "imagination/uncertainty_layers.h"
 
 namespace hires::imagination {
 namespace {
@@ -269,6 +270,13 @@ double PlaceMargin(const Uncertainty& uncertainty, const geometry::Polygon& foot
                     geometry::CircumscribedRadius(footprint) * largest("localisation_yaw"));
 }
 
+Uncertainty LoadUncertaintyOf(const SetupConfig& config) {
+  const Uncertainty uncertainty =
+      config.uncertainty == "none" ? NoUncertainty() : LoadUncertainty(config.uncertainty);
+  if (config.uncertainty_over.empty()) return uncertainty;
+  return LaidOver(uncertainty, LoadUncertainty(config.uncertainty_over));
+}
+
 /// Whoever has no base laser drives by the map alone.
 SetupConfig ForRobot(SetupConfig config, const robot::Robot& robot) {
   if (!config.driving.obstacle_layer || !robot.profile.laser_link.empty()) return config;
@@ -295,7 +303,9 @@ void OverridePaths(const std::optional<std::string>& world, const std::optional<
   override_one(world, &config->world);
   override_one(robot, &config->robot);
   override_one(objects, &config->objects);
-  override_one(uncertainty, &config->uncertainty);
+  const bool is_none = uncertainty && *uncertainty == "none";
+  if (is_none) config->uncertainty_over.clear();
+  override_one(uncertainty, is_none ? &config->uncertainty : &config->uncertainty_over);
 }
 
 SetupConfig ReadSetupConfig(const std::string& path) {
@@ -366,8 +376,7 @@ ImaginationSetup LoadImaginationSetup(const SetupConfig& scene) {
   ImaginationSetup setup;
   robot::Robot robot = robot::LoadAnyRobot(scene.robot);
   SetupConfig config = ForRobot(scene, robot);
-  setup.uncertainty = std::make_shared<const Uncertainty>(
-      config.uncertainty == "none" ? NoUncertainty() : LoadUncertainty(config.uncertainty));
+  setup.uncertainty = std::make_shared<const Uncertainty>(LoadUncertaintyOf(config));
   if (robot.profile.laser_link.empty())
     config.driving.place_margin = PlaceMargin(*setup.uncertainty, robot.profile.footprint);
   std::optional<world::OccupancyGrid> map;

@@ -21,6 +21,7 @@ using simulation::Variation;
 
 constexpr double kLargestScore = 3.0;  // what lies beyond is drawn again
 constexpr char kCorrelation[] = "start_correlation";
+constexpr char kOnly[] = "only";
 
 /// Each quantity has its own.
 base::Rng StreamOf(const std::string& quantity, const base::Rng& rng) {
@@ -96,12 +97,10 @@ const std::vector<Quantity>& Quantities() {
 }
 
 const Quantity& FindQuantity(const base::ParamReader& in, const std::string& name) {
-  std::vector<std::string> names;
   for (const Quantity& quantity : Quantities()) {
     if (quantity.name == name) return quantity;
-    names.push_back(quantity.name);
   }
-  in.Fail(name, base::UnknownName("quantity", name, names));
+  in.Fail(name, base::UnknownName("quantity", name, QuantityNames()));
 }
 
 Distribution ReadDistribution(base::ParamReader in, const Quantity& quantity) {
@@ -231,7 +230,7 @@ double Distribution::Largest() const {
 std::map<std::string, Distribution> ReadQuantities(base::ParamReader* in) {
   std::map<std::string, Distribution> quantities;
   for (const std::string& name : in->Keys()) {
-    if (name == kCorrelation) continue;  // left to who has the reader
+    if (name == kCorrelation || name == kOnly) continue;  // left to who has the reader
     const Quantity& quantity = FindQuantity(*in, name);
     quantities[name] = ReadDistribution(in->Sub(name), quantity);
   }
@@ -243,6 +242,7 @@ Uncertainty ParseUncertainty(const std::string& yaml, const std::string& where) 
   Uncertainty uncertainty;
   uncertainty.quantities = ReadQuantities(&in);
   if (in.Has(kCorrelation)) uncertainty.start_correlation = ReadCorrelation(in.Sub(kCorrelation));
+  if (in.Has(kOnly)) uncertainty.is_only = in.GetBool(kOnly);
   in.RejectUnknownKeys();
   uncertainty.yaml = yaml;
   uncertainty.hash = HashOf(uncertainty.quantities, uncertainty.start_correlation);
@@ -253,7 +253,13 @@ Uncertainty LoadUncertainty(const std::string& path) {
   return ParseUncertainty(base::ReadTextFile(path, 1u << 20), path);
 }
 
-Uncertainty NoUncertainty() { return {{}, {}, "none", HashOf({})}; }
+Uncertainty NoUncertainty() { return {{}, {}, true, "none", HashOf({})}; }
+
+std::vector<std::string> QuantityNames() {
+  std::vector<std::string> names;
+  for (const Quantity& quantity : Quantities()) names.push_back(quantity.name);
+  return names;
+}
 
 Uncertainty UncertaintyFromText(const std::string& text, const std::string& where) {
   return text == "none" ? NoUncertainty() : ParseUncertainty(text, where);

@@ -10,6 +10,7 @@
 #include "hires/base/text.h"
 #include "imagination/purpose.h"
 #include "imagination/rollout/rollout_start.h"
+#include "imagination/uncertainty_layers.h"
 
 namespace hires::imagination {
 namespace {
@@ -173,6 +174,8 @@ void AddCaveats(const RolloutSetup& setup, const std::vector<base::ActionCall>& 
   for (std::string& caveat : CaveatsOf(setup, actions, validated)) {
     report->caveats.push_back(std::move(caveat));
   }
+  const std::string certain = CertainText(*setup.uncertainty);
+  if (!certain.empty()) report->caveats.push_back(certain);
 }
 
 }  // namespace hires::imagination

@@ -5,6 +5,7 @@
 
 #include "hires/base/error.h"
 #include "hires/base/text.h"
+#include "imagination/uncertainty_layers.h"
 #include "sim_robot/controller_changes.h"
 
 namespace hires::sim_robot {
@@ -29,7 +30,8 @@ bool ChangesWhatIsDrawn(const Truth& truth) {
 }
 
 Uncertainty UncertaintyOf(const Truth& truth, const Uncertainty& imagined) {
-  Uncertainty drawn = truth.uncertainty ? *truth.uncertainty : imagined;
+  Uncertainty drawn =
+      truth.uncertainty ? imagination::LaidOver(imagined, *truth.uncertainty) : imagined;
   for (const auto& [name, distribution] : truth.changes) drawn.quantities[name] = distribution;
   if (truth.sensing == Sensing::kIdeal) {
     for (const char* name : kOfSensors) drawn.quantities.erase(name);

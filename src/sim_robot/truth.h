@@ -75,6 +75,7 @@ struct Truth {
   std::map<std::string, double> controller;  ///< keys as in the profile's base_controller
 
   /// What all hidden quantities are drawn from; null: what imagination draws from.
+  /// It lies over that, as far as it goes (imagination::LaidOver).
   std::shared_ptr<const imagination::Uncertainty> uncertainty;
   /// Quantities that are drawn from something else than `uncertainty` says.
   std::map<std::string, imagination::Distribution> changes;

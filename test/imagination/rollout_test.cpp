@@ -110,7 +110,7 @@ TEST(RolloutTest, TimeIsUp) {
   setup.params.time_limit = 3.0;
   const RolloutResult result = Play(setup, kSlow);
   EXPECT_EQ(result.outcome, Outcome::kTimedOut);
-  EXPECT_EQ(ToString(result.failure), "timed_out");
+  EXPECT_THAT(ToString(result.failure), HasSubstr("timed_out: it was still under way"));
   EXPECT_FALSE(result.action_finished);
   EXPECT_NEAR(result.duration, 3.0, 0.0011);
   EXPECT_TRUE(ActionFailed(result));

@@ -33,7 +33,9 @@ struct SetupConfig {
   std::string robot;             ///< robot profile (.yaml) or bare URDF (.urdf)
   std::string objects;           ///< catalogue of object instances (YAML)
   std::string uncertainty;       ///< YAML, or "none"
-  std::string detector;          ///< how the camera's recogniser errs (YAML), or "none"
+  /// YAML that lies over it, as far as it goes (see LaidOver); or empty.
+  std::string uncertainty_over;
+  std::string detector;    ///< how the camera's recogniser errs (YAML), or "none"
   std::string recogniser;  ///< that one itself (YAML), which then looks at pictures; or "none"
   /// What tells the robot of a rollout where it is: "drawn" (off as the uncertainty says), "fitted"
   /// (its error goes as `localisation_error` says), "filter" (itself, as `self_localisation` says).
@@ -68,7 +70,8 @@ void SetObstacleLayer(const std::string& path, SetupConfig* config);
 /// A path that stands in the file `config_path`: relative ones count from that file's folder.
 std::string ResolvePath(const std::string& path, const std::string& config_path);
 
-/// Puts other files in place of the configured ones; what is not given or empty stays.
+/// Puts other files in place of the configured ones; what is not given or empty stays. An
+/// uncertainty lies over the configured one; "none" takes it away.
 void OverridePaths(const std::optional<std::string>& world, const std::optional<std::string>& robot,
                    const std::optional<std::string>& objects,
                    const std::optional<std::string>& uncertainty, SetupConfig* config);

@@ -71,6 +71,9 @@ struct RolloutHooks {
   /// comes to lie; nothing of that counts. With it on_sample is called until the very end (with the
   /// tilt that was last counted), without it until the action ends.
   double epilogue{0.0};
+  /// The action ran out of time, or gave up going to and fro: from `time` [s, simulator's clock] on
+  /// it came no further. `text` says what it did instead.
+  std::function<void(double time, const std::string& text)> on_stall{};
 };
 
 /// Plays rollout `index` of an action: samples a truth (the same for every action that is played

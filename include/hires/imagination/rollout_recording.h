@@ -30,6 +30,7 @@ struct RolloutEvent {
     kLiftsOff,   ///< nothing touches it any more
     kFalls,      ///< as the world::StandingCriterion says
     kContact,    ///< the robot touches what it should not
+    kStall,      ///< from here on it comes no further
     kEnd         ///< the action ended
   };
   Kind kind{Kind::kEnd};

@@ -4,6 +4,7 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "hires/base/hash.h"
 #include "hires/base/param_reader.h"
@@ -38,6 +39,9 @@ struct Uncertainty {
   std::map<std::string, Distribution> quantities;
   /// Of start_x, start_y, start_yaw, and of docked_x, ... likewise, where these are normal.
   std::optional<PoseCorrelation> start_correlation;
+  /// It says `only: true`, or is "none": what it does not name is certain. Else it lies over
+  /// another one where there is one: LaidOver in imagination/uncertainty_layers.h.
+  bool is_only{false};
   std::string yaml;       ///< the text it was read from; "none" if nothing is uncertain
   std::uint64_t hash{0};  ///< of names, distributions and correlations
 };
@@ -46,7 +50,7 @@ struct Uncertainty {
 /// (fixed, uniform, normal, lognormal, laplace), its numbers (`value`; `lower`, `upper`; `mean`,
 /// `sd`; `median`, `log_sd`; `mean`, `distance`), `unit` (must be the quantity's own) and `source`
 /// (why these numbers). Beside them may stand `start_correlation`, a map with `x_y`, `x_yaw`,
-/// `y_yaw`.
+/// `y_yaw`, and `only`, true or false.
 /// @throws base::ConfigError naming file, key and line.
 Uncertainty LoadUncertainty(const std::string& path);
 Uncertainty ParseUncertainty(const std::string& yaml, const std::string& where);
@@ -56,6 +60,9 @@ std::map<std::string, Distribution> ReadQuantities(base::ParamReader* in);
 
 /// What makes two uncertainties the same: names and distributions.
 void AddTo(base::Hasher* hasher, const std::map<std::string, Distribution>& quantities);
+
+/// All that a distribution may be given for.
+std::vector<std::string> QuantityNames();
 
 /// `text` is "none", or YAML as above.
 Uncertainty UncertaintyFromText(const std::string& text, const std::string& where);

@@ -37,7 +37,7 @@ std::vector<std::string> CaveatsOf(const RolloutSetup& setup,
                                    const std::vector<base::ActionCall>& actions,
                                    const Validated& validated);
 
-/// The same, after what the report already says.
+/// The same, after what the report already says, and what is taken as certain (CertainText).
 void AddCaveats(const RolloutSetup& setup, const std::vector<base::ActionCall>& actions,
                 const Validated& validated, Report* report);
 

@@ -89,7 +89,8 @@ std::uint64_t HashOf(const ImaginationSetup& setup, const std::string& place) {
 Stage MakeStage(const ExperimentConfig& config) {
   imagination::SetupConfig scene = imagination::ReadSetupConfig(config.scene);
   if (config.world != "scene") scene.world = config.world;
-  if (config.uncertainty != "scene") scene.uncertainty = config.uncertainty;
+  if (config.uncertainty != "scene")
+    imagination::OverridePaths({}, {}, {}, config.uncertainty, &scene);
   if (config.obstacle_layer != "scene")
     imagination::SetObstacleLayer(config.obstacle_layer, &scene);
   Stage stage;

@@ -11,6 +11,7 @@
 #include "imagination/purpose.h"
 #include "imagination/rollout/floor_objects.h"
 #include "imagination/rollout/load_monitor.h"
+#include "imagination/rollout/progress_watch.h"
 #include "imagination/rollout/reach_watch.h"
 #include "imagination/rollout/rollout_start.h"
 
@@ -46,7 +47,9 @@ class Player {
         control_rng_(rng.Fork(kControl)),
         simulator_(setup.scene, variation, setup.world_state, setup.robot_state,
                    rng.Fork(kSimulator), setup.physics, LevelFor(*setup.skills, action)),
-        floor_(*setup.scene, setup.world_state.objects) {
+        floor_(*setup.scene, setup.world_state.objects),
+        drives_(skills::SpecOf(*setup.skills, action).driving != actions::Driving::kNone),
+        driving_(setup.skills->driving) {
     simulator_.Remember(KnownAtStart(setup, variation, simulator_));
   }
 
@@ -83,6 +86,7 @@ class Player {
       if (elapsed >= params_.time_limit) status = skills::Failed(Code::kTimedOut);
     }
     result_.duration = simulator_.time() - start;
+    SayWhyItEnds(hooks, &status.failure);
     if (!WatchAftermath(&monitor, hooks)) return std::nullopt;
     monitor.Conclude();
     if (hooks.on_end) hooks.on_end(monitor.Down());
@@ -116,6 +120,8 @@ class Player {
     for (geometry::Polygon& outline : floor_.SeenBy(simulator_, seen.X_MB))
       seen.obstacles_M.push_back(std::move(outline));
     const skills::Status status = skill_->Update(seen, &command);
+    if (drives_)
+      progress_.Note(simulator_.time() - start, simulator_.base().X_MB, skill_->drive_view());
     simulator_.Send(command);
     next_cycle_ += skill_->period();
     if (control_rng_.Bernoulli(variation_.late_cycle_probability)) {
@@ -123,6 +129,20 @@ class Player {
       if (hooks.on_late_cycle) hooks.on_late_cycle(simulator_, variation_.late_cycle_delay);
     }
     return status;
+  }
+
+  /// Of a drive that came no further, from when on and what would help. Others are left alone.
+  void SayWhyItEnds(const RolloutHooks& hooks, base::Failure* failure) const {
+    const bool is_endless = failure->code == Code::kTimedOut || failure->code == Code::kOscillating;
+    if (!is_endless || !drives_ || !driving_) return;
+    const std::optional<Stall> stall = progress_.StallAtEnd();
+    if (stall && hooks.on_stall) hooks.on_stall(start_ + stall->since, WhatItDoes(*stall));
+    if (!failure->detail.empty()) return;
+    if (stall) {
+      failure->detail = StallText(*stall, driving_->params);
+    } else if (failure->code == Code::kTimedOut) {
+      failure->detail = UnderWayText(params_.time_limit, progress_.ToGoal());
+    }
   }
 
   base::Failure Collision() const {
@@ -198,6 +218,9 @@ class Player {
   base::Rng control_rng_;
   RobotSimulator simulator_;
   FloorObjects floor_;
+  const bool drives_;
+  const std::shared_ptr<const skills::DrivingContext> driving_;
+  ProgressWatch progress_;
   double start_{0.0}, next_cycle_{0.0};  // [s]
   long samples_{0};
   bool is_void_{false};  // physics broke before anything fell

@@ -63,6 +63,18 @@ class Recorder {
     Say(Kind::kLateCycle, now, fmt::format("cycle late {:.2f} s", delay));
   }
 
+  /// What came late while it came no further had no part in it.
+  void NoteStall(double time, const std::string& text) {
+    const double since = time - begin_;
+    auto& events = recording_.events;
+    const auto is_false_trail = [&](const RolloutEvent& event) {
+      return event.time >= since &&
+             (event.kind == Kind::kLateCycle || event.kind == Kind::kTimedOut);
+    };
+    events.erase(std::remove_if(events.begin(), events.end(), is_false_trail), events.end());
+    Say(Kind::kStall, since, "comes no further: " + text);
+  }
+
  private:
   using Kind = RolloutEvent::Kind;
 
@@ -229,6 +241,7 @@ std::optional<RolloutRecording> RecordRollout(const RolloutSetup& setup,
   hooks.on_late_cycle = [&](const RobotSimulator& simulator, double delay) {
     recorder.NoteLateCycle(simulator, delay);
   };
+  hooks.on_stall = [&](double time, const std::string& text) { recorder.NoteStall(time, text); };
   hooks.epilogue = kEpilogue;
   const std::optional<RolloutResult> result = PlayRollout(setup, action, index, hooks);
   if (!result) return std::nullopt;

@@ -61,9 +61,8 @@ hires::ImagineGoal GoalOf(const hires::cli::ImagineQuery& query) {
   goal.play_all = !query.scheduler.early_stop;
   goal.request_id = "hires_imagine";
   if (query.own_uncertainty) {
-    goal.uncertainty = query.setup.uncertainty == "none"
-                           ? "none"
-                           : hires::base::ReadTextFile(query.setup.uncertainty, 1u << 20);
+    const std::string& over = query.setup.uncertainty_over;
+    goal.uncertainty = over.empty() ? "none" : hires::base::ReadTextFile(over, 1u << 20);
   }
   return goal;
 }

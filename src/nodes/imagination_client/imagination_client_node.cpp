@@ -270,7 +270,8 @@ hires::RolloutGoal ImaginationClientNode::RolloutGoalFor(const Session& session,
   goal.uncertainty_hash = setup.uncertainty->hash;
   goal.physics_hash = setup_.physics_hash;
   const bool is_own = setup.uncertainty->hash == setup_.uncertainty->hash;
-  goal.uncertainty = is_own ? session.goal.getGoal()->uncertainty : setup.uncertainty->yaml;
+  const bool is_asked_for = !session.goal.getGoal()->uncertainty.empty();
+  goal.uncertainty = is_own && !is_asked_for ? "" : setup.uncertainty->yaml;
   goal.seed = setup.seed;
   goal.first = assign.first_index;
   goal.count = assign.count;

@@ -16,7 +16,8 @@ using hires::base::ParamReader;
 
 /// Nothing uncertain means that the sensors tell the truth, too.
 void DropNoiseIfCertain(SimRobotParams* params) {
-  if (params->setup.uncertainty == "none") hires::sim_robot::DropNoise(&params->sensors);
+  if (params->setup.uncertainty == "none" && params->setup.uncertainty_over.empty())
+    hires::sim_robot::DropNoise(&params->sensors);
 }
 
 /// @param path  of the file that the truths lie beside.

@@ -110,6 +110,7 @@ ordered_json FailuresToJson(const std::map<base::Failure, int>& failures) {
   for (const auto& [failure, count] : failures) {
     list.push_back({{"failure", base::ToString(failure.code)},
                     {"subjects", failure.subjects},
+                    {"detail", failure.detail},
                     {"count", count}});
   }
   return list;

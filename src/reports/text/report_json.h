@@ -23,7 +23,8 @@ nlohmann::ordered_json ToJson(const imagination::Report& report,
 /// {"failure": "no_path", "subjects": ["hand", "book1"], "detail": "..."}; null for no failure.
 nlohmann::ordered_json ToJson(const base::Failure& failure);
 
-/// How often each failure came: [{"failure": "area_occupied", "subjects": ["book1"], "count": 2}].
+/// How often each failure came: [{"failure": "area_occupied", "subjects": ["book1"],
+/// "detail": "...", "count": 2}]; the detail is of the first of them.
 nlohmann::ordered_json FailuresToJson(const std::map<base::Failure, int>& failures);
 
 /// For those who work long before they write.

@@ -20,10 +20,21 @@ bool IsNumber(const std::string& text) {
   return !text.empty() && (std::isdigit(static_cast<unsigned char>(text[0])) || text[0] == '-');
 }
 
+/// A cell has no room for a sentence: that stands below the table.
+bool HasSentence(const base::Failure& failure) {
+  constexpr std::size_t kLongestInCell = 48;
+  return failure.detail.size() > kLongestInCell;
+}
+
+std::string InCell(const base::Failure& failure) {
+  if (!HasSentence(failure)) return base::ToString(failure);
+  return base::ToString(base::Failure(failure.code, failure.subjects));
+}
+
 std::string Failures(const imagination::Evidence& evidence) {
   std::vector<std::string> parts;
   for (const auto& [failure, count] : evidence.failures) {
-    parts.push_back(fmt::format("{} {}", base::ToString(failure), count));
+    parts.push_back(fmt::format("{} {}", InCell(failure), count));
   }
   return base::Join(parts, ", ");
 }
@@ -107,6 +118,31 @@ std::string RankingTable(const std::vector<imagination::Prediction>& ranking, in
   }
   const std::string price_line = prices.empty() ? "" : "cost: seconds; " + prices + '\n';
   return FormatTable(rows) + KindLine(ranking) + price_line;
+}
+
+std::string FailureLines(const std::vector<imagination::Prediction>& ranking) {
+  struct Told {
+    const base::Failure* failure;
+    std::vector<std::string> actions;
+  };
+  std::vector<Told> told;
+  for (const imagination::Prediction& prediction : ranking) {
+    for (const auto& [failure, count] : prediction.evidence.failures) {
+      if (!HasSentence(failure) || failure.detail.empty()) continue;
+      const base::Failure& now = failure;
+      auto same = std::find_if(told.begin(), told.end(), [&](const Told& before) {
+        return before.failure->code == now.code && before.failure->detail == now.detail;
+      });
+      if (same == told.end()) same = told.insert(same, {&failure, {}});
+      same->actions.push_back(base::ToString(prediction.action));
+    }
+  }
+  std::string lines;
+  for (const auto& [failure, actions] : told) {
+    lines += fmt::format("{}: {}: {}\n", base::ToString(failure->code), base::Join(actions, ", "),
+                         failure->detail);
+  }
+  return lines;
 }
 
 std::string ProgressLine(const imagination::Progress& progress, int width) {

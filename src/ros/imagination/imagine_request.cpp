@@ -14,6 +14,7 @@
 #include "hires/ros/values/action_messages.h"
 #include "hires/ros/values/atom_messages.h"
 #include "hires/ros/world/world_messages.h"
+#include "imagination/uncertainty_layers.h"
 
 namespace hires_ros {
 namespace {
@@ -79,8 +80,10 @@ ImagineRequest RequestOf(const hires::ImagineGoal& goal, const imagination::Imag
   request.actions = hires::base::Combinations(StepOf(goal));
   request.setup = imagination::MakeRolloutSetup(setup, StartOf(goal, setup), goal.seed);
   if (!goal.uncertainty.empty()) {
-    request.setup.uncertainty = std::make_shared<const imagination::Uncertainty>(
-        imagination::UncertaintyFromText(goal.uncertainty, "uncertainty of the request"));
+    request.setup.uncertainty =
+        std::make_shared<const imagination::Uncertainty>(imagination::LaidOver(
+            *setup.uncertainty,
+            imagination::UncertaintyFromText(goal.uncertainty, "uncertainty of the request")));
   }
   request.params = ParamsOf(goal, defaults);
   request.params.criteria.prices.time_limit = request.setup.params.time_limit;

@@ -48,7 +48,8 @@ void AddOptions(CLI::App* app, ImagineOptions* o) {
   app->add_option("--min-success", o->min_success,
                   "share of successes that the lower end of the interval must reach")
       ->check(NumberBetween(0.001, 0.999));
-  app->add_option("--uncertainty", o->uncertainty, "YAML file, or none");
+  app->add_option("--uncertainty", o->uncertainty,
+                  "YAML file over the scene's own (`only: true` in it: instead), or none");
   app->add_option("--sensing", o->sensing,
                   "with --local, by what rollouts see: fitted (a quick detector that errs as the "
                   "recogniser was found to), pictures (the recogniser itself; slow)")
@@ -196,6 +197,7 @@ void PrintReport(const imagination::Report& report, imagination::RankingRule rul
               << '\n';
   }
   std::cout << fmt::format("{}: {}\n", reports::OutcomeName(report), report.why);
+  std::cout << reports::FailureLines(report.ranking);
   PrintBlockedGoals(report.ranking);
   for (const std::string& caveat : report.caveats) std::cout << "caveat: " << caveat << '\n';
   if (report.kept.rollouts > 0) {
@@ -244,7 +246,8 @@ ReportOrigin OriginOf(const ImagineOptions& options, const ImagineQuery& query, 
                    {"map", files.map},
                    {"robot", files.robot},
                    {"objects", files.objects},
-                   {"uncertainty", has_uncertainty ? files.uncertainty : ""}};
+                   {"uncertainty", has_uncertainty ? files.uncertainty : ""},
+                   {"uncertainty over it", files.uncertainty_over}};
   for (const std::string& object : files.extra_objects) origin.inputs.push_back({"object", object});
   const imagination::ImaginationSetup& setup = scene->setup();
   origin.hashes = {{"world", base::HexOf(setup.world_hash)},

@@ -85,6 +85,8 @@ void Print(const Replayed& replayed) {
   const RolloutRecording& recording = replayed.recording;
   std::cout << fmt::format("rollout {} of {} (alternative {}), seed {}:\n", recording.index,
                            ToString(recording.action), replayed.picked.rank, recording.seed);
+  const base::Failure failure = imagination::FailureOf(recording.result);
+  if (failure) std::cout << fmt::format("  {}\n", ToString(failure));
   for (const imagination::RolloutEvent& event : recording.events) {
     std::cout << fmt::format("{:8.2f} s  {}\n", event.time, event.text);
   }

@@ -54,7 +54,8 @@ void AddLimitsVerb(CLI::App* app, LimitsOptions* options) {
                    "share of drives that may lose the object; default: 0.01")
       ->check(NumberBetween(0.001, 0.5));
   verb->add_option("--objects", options->objects, "another catalogue of objects (YAML)");
-  verb->add_option("--uncertainty", options->uncertainty, "YAML file, or none");
+  verb->add_option("--uncertainty", options->uncertainty,
+                   "YAML file over the scene's own (`only: true` in it: instead), or none");
   verb->add_option("--scene", options->scene, "another scene file instead of config/scene.yaml");
   verb->add_option("--seed", options->seed, "of all chance; equal seeds give equal answers")
       ->check(WholeNumber());
