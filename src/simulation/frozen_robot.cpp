@@ -45,7 +45,7 @@ void FrozenRobot::AddBody(const Pose3& X_MB, const std::vector<geometry::Collisi
   body_ = physics_->AddDriven(shapes, X_MB);
   if (!shapes_B_) return;
   clearance_.emplace(shapes, scene_->world);
-  for (const geometry::Collision& shape : shapes) shape_names_.push_back(shape.name);
+  shapes_ = shapes;
 }
 
 void FrozenRobot::Move(const Pose3& X_MB, const Pose3& X_MBnext) {
@@ -59,8 +59,9 @@ std::optional<RobotContact> FrozenRobot::FindContact(const geometry::Pose2& X_MB
   // A raised arm's prism reaches down to where the arm is not: look exactly.
   const auto touch = physics_->FindFixedTouch(body_, kFloorBody);
   if (!touch) return std::nullopt;
-  return RobotContact{shape_names_[touch->shape],
-                      scene_->world.statics[touch->fixed - kFloorBody - 1].name};
+  geometry::Collision part = shapes_[touch->shape];
+  part.X_BS = geometry::Lift(X_MB) * part.X_BS;
+  return ContactWith(part, scene_->world.statics[touch->fixed - kFloorBody - 1], scene_->world);
 }
 
 }  // namespace hires::simulation

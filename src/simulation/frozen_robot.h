@@ -36,7 +36,7 @@ class FrozenRobot {
   // Where the posture is not the driving one, whose shapes and clearance the scene has:
   std::optional<std::vector<geometry::Collision>> shapes_B_;
   std::optional<RobotClearance> clearance_;
-  std::vector<std::string> shape_names_;  // of the body
+  std::vector<geometry::Collision> shapes_;  // of the body
   physics::PhysicsWorld* physics_{nullptr};
   physics::BodyId body_{0};
 };

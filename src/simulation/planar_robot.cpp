@@ -240,8 +240,14 @@ std::optional<RobotContact> PlanarRobot::FindContact(
   for (std::size_t i = 1; i < body_ids_.size(); ++i) {
     const auto touch = physics_->FindFixedTouch(body_ids_[i]);
     if (!touch) continue;
-    return RobotContact{links_.bodies()[i].collisions[touch->shape].name,
-                        fixed_names_[touch->fixed]};
+    geometry::Collision part = links_.bodies()[i].collisions[touch->shape];
+    part.X_BS = X_M_[i] * part.X_BS;
+    const auto& statics = scene_->world.statics;
+    const auto body = std::find_if(statics.begin(), statics.end(), [&](const auto& fixed) {
+      return fixed.name == fixed_names_[touch->fixed];
+    });
+    if (body != statics.end()) return ContactWith(part, *body, scene_->world);
+    return RobotContact{part.name, fixed_names_[touch->fixed]};
   }
   const std::optional<Hands::Blocked>& blocked = hands_.blocked();
   if (!blocked) return std::nullopt;

@@ -116,10 +116,12 @@ void RobotSimulator::AddCamera(const base::Rng& rng) {
 
 void RobotSimulator::RefuseBadStart() {
   if (const auto contact = FindContact()) {
-    throw base::ConfigError(fmt::format(
-        "robot starts in collision: its '{}' touches '{}' at x {:.3f} m, y {:.3f} m, yaw {:.3f} "
-        "rad; move the start",
-        contact->robot_part, contact->obstacle, base().X_MB.x, base().X_MB.y, base().X_MB.yaw));
+    throw base::ConfigError(
+        fmt::format("robot starts in collision: its '{}' touches '{}'{}, where it stands at x "
+                    "{:.3f} m, y {:.3f} "
+                    "m, yaw {:.3f} rad; move the start",
+                    contact->robot_part, contact->obstacle, PlaceText(*contact), base().X_MB.x,
+                    base().X_MB.y, base().X_MB.yaw));
   }
   const std::vector<world::ObjectState> objects = GetWorldState().objects;
   for (std::size_t i = 0; i < objects.size(); ++i) {

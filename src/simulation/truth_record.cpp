@@ -19,8 +19,7 @@ void TruthRecord::Look(const RobotSimulator& simulator) {
   if (last_) distance_ += std::hypot(X_MB.x - last_->x, X_MB.y - last_->y);
   last_ = X_MB;
   if (contact_.empty() && simulator.contact()) {
-    contact_ = fmt::format("{} touches {}", simulator.contact()->robot_part,
-                           simulator.contact()->obstacle);
+    contact_ = ToString(*simulator.contact());
   }
 }
 

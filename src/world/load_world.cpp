@@ -174,6 +174,9 @@ class WorldBuilder {
     if (model.shapes.floor_friction) SetFloor(*model.shapes.floor_friction, model.where);
     if (model.shapes.collisions.empty()) return;  // a floor, or there to be looked at only
     world_.statics.push_back({model.name, model.X_MB, std::move(model.shapes.collisions)});
+    const StaticBody& body = world_.statics.back();
+    for (const geometry::Collision& shape : body.collisions)
+      world_.sources[NameOf(body, shape)] = model.shapes.places[shape.name];
   }
 
   void SetFloor(double friction, const std::string& where) {

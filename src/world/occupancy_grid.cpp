@@ -159,15 +159,13 @@ std::vector<Block> Blocks(const OccupancyGrid& grid) {
   return done;
 }
 
-geometry::Collision BoxOf(const Block& block, const OccupancyGrid& grid, double height,
-                          std::size_t index) {
+geometry::Collision BoxOf(const Block& block, const OccupancyGrid& grid, double height) {
   const Eigen::Vector2d lower =
       grid.origin + grid.resolution * Eigen::Vector2d(block.column_begin, block.row_begin);
   const Eigen::Vector2d upper =
       grid.origin + grid.resolution * Eigen::Vector2d(block.column_end, block.row_end);
   const Eigen::Vector2d middle = (lower + upper) / 2.0;
-  geometry::Collision collision;
-  collision.name = fmt::format("block_{:06}", index);
+  geometry::Collision collision;  // without a name: the map gives it none
   collision.shape = geometry::Box{{upper.x() - lower.x(), upper.y() - lower.y(), height}};
   collision.X_BS.translation = {middle.x(), middle.y(), height / 2.0};
   return collision;
@@ -212,7 +210,7 @@ World ExtrudeMap(const OccupancyGrid& grid, double height) {
   world.name = "extruded_map";
   StaticBody walls{"map_walls", {}, {}};
   for (const Block& block : Blocks(grid)) {
-    walls.collisions.push_back(BoxOf(block, grid, height, walls.collisions.size()));
+    walls.collisions.push_back(BoxOf(block, grid, height));
   }
   if (!walls.collisions.empty()) world.statics.push_back(std::move(walls));
   world.hash = world.ComputeHash();

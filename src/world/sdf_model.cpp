@@ -134,6 +134,7 @@ class StaticCollector {
         VisitPlane(collision, X_BL);
       } else {
         result.collisions.push_back(CollisionOf(collision, X_BL, prefix, context_));
+        result.places[result.collisions.back().name] = PlaceOf(collision.Element());
       }
     }
   }

@@ -46,6 +46,7 @@ bool IsStatic(const sdf::Model& model);
 /// names where there are several links.
 struct StaticShapes {
   std::vector<geometry::Collision> collisions;
+  std::map<std::string, std::string> places;  ///< "file:line" of each, by its name
   std::optional<double> floor_friction;  ///< of a plane z = 0 in the world, if the model has one
 };
 StaticShapes StaticShapesOf(const sdf::Model& model, const geometry::Pose3& X_MB,

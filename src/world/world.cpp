@@ -114,6 +114,11 @@ std::uint64_t World::ComputeHash() const {
   return hasher.value();
 }
 
+std::string NameOf(const StaticBody& body, const geometry::Collision& shape) {
+  if (body.collisions.size() == 1 || shape.name.empty()) return body.name;
+  return body.name + "::" + shape.name;
+}
+
 Eigen::AlignedBox2d Inset(const Eigen::AlignedBox2d& extent, double edge) {
   return {(extent.min().array() + edge).min(0.0).matrix(),
           (extent.max().array() - edge).max(0.0).matrix()};

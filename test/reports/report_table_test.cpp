@@ -66,6 +66,27 @@ TEST(RankingTableTest, MarksTheRecommendedLineAlone) {
   EXPECT_THAT(RankingTable(ranking, 1), HasSubstr("\n>  move_base_param(east, fast)"));
 }
 
+TEST(FailureLinesTest, SentencesStandBelowTheTableAndNotInIt) {
+  using Code = base::FailureCode;
+  auto ranking = test_support::TwoAlternatives().ranking;
+  const std::string sentence = "the way ends at x 2.85 m, y 2.05 m; beyond it is a wall of the map";
+  for (auto& prediction : ranking)
+    prediction.evidence.failures = {{{Code::kNoPath, {}, sentence}, 4}};
+  ranking[1].evidence.failures[{Code::kRobotCollision,
+                                {"base", "house::coat_stand"},
+                                "base touches house::coat_stand at x 0.15 m, y 0.00 m"}] = 2;
+  ranking[1].evidence.failures[{Code::kObjectFell, {"stick"}}] = 3;
+  const std::string table = RankingTable(ranking, -1);
+  EXPECT_THAT(table, HasSubstr("robot_collision: base touches house::coat_stand 2"));
+  EXPECT_THAT(table, HasSubstr("object_fell: stick 3"));
+  EXPECT_THAT(table, Not(HasSubstr("the way ends")));
+  EXPECT_EQ(FailureLines(ranking), "no_path: " + ToString(ranking[0].action) + ", " +
+                                       ToString(ranking[1].action) + ": " + sentence +
+                                       "\nrobot_collision: " + ToString(ranking[1].action) +
+                                       ": base touches house::coat_stand at x 0.15 m, y 0.00 m\n");
+  EXPECT_EQ(FailureLines(test_support::TwoAlternatives().ranking), "");
+}
+
 imagination::Progress ProgressOf(int done, int total, std::optional<double> left = {}) {
   return {done, total, static_cast<double>(done) / total, left};
 }

@@ -69,7 +69,7 @@ TEST(AreasTest, TheLoadedPr2StandsFreeWhereverItMayStand) {
 TEST(AreasTest, TheMillWouldTouchTheCounterFromWhereItsPoseWasRecorded) {
   const auto contact = RobotClearance(Mill(), Restaurant().world).FindContact({5.9, 10.11, 3.14});
   ASSERT_TRUE(contact);
-  EXPECT_EQ(contact->obstacle, "counter1");
+  EXPECT_EQ(contact->obstacle, "counter1::slab");
 }
 
 TEST(AreasTest, TheMillsTopIsAboveTheLowerFaceOfTheSlab) {

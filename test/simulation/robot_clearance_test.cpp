@@ -12,6 +12,7 @@
 #include "hires/robot/robot_profile.h"
 #include "hires/simulation/scene.h"
 #include "support/box_mesh.h"
+#include "support/rounds.h"
 #include "support/scenes.h"
 
 namespace hires::simulation::robot_clearance_test {
@@ -254,7 +255,53 @@ TEST(RobotClearanceTest, WestOfTable2ThePr2StandsBesideChair2) {
   EXPECT_NEAR(scene->clearance.Clearance(X_MB, 1.0), 0.14, 0.01);
   const auto contact = scene->clearance.FindContact(X_MB * geometry::Pose2{-0.15, 0.0, 0.0});
   ASSERT_TRUE(contact);
-  EXPECT_EQ(contact->obstacle, "chair2");
+  EXPECT_EQ(contact->obstacle, "chair2::back_rest");
+}
+
+/// A body of several boxes at random places around (3, 0).
+world::StaticBody House(base::Rng* rng, bool as_mesh) {
+  world::StaticBody house{"house", geometry::Lift({3.0, 0.0, rng->Uniform(-3.0, 3.0)}), {}};
+  for (const char* name : {"coat_stand", "shelf", "stove"}) {
+    geometry::Collision shape =
+        Shape(name, geometry::Box{{rng->Uniform(0.1, 0.6), rng->Uniform(0.1, 0.6), 1.0}},
+              {rng->Uniform(-2.0, 2.0), rng->Uniform(-2.0, 2.0), 0.5});
+    if (as_mesh) {
+      const Eigen::Vector3d size = std::get<geometry::Box>(shape.shape).size;
+      shape.shape = test_support::BoxMesh(size);
+    }
+    house.collisions.push_back(shape);
+  }
+  return house;
+}
+
+TEST(RobotClearanceTest, AContactNamesTheShapeItsPlaceAndItsLine) {
+  base::Rng rng(21);
+  int num_contacts = 0;
+  for (int i = 0; i < test_support::Rounds(400); ++i) {
+    world::World world = WorldOf({House(&rng, i % 2 == 0)});
+    for (const char* name : {"coat_stand", "shelf", "stove"})
+      world.sources[std::string("house::") + name] = std::string(name) + ".world:3";
+    const geometry::Pose2 X_MB{rng.Uniform(1.0, 5.0), rng.Uniform(-2.0, 2.0),
+                               rng.Uniform(-3.0, 3.0)};
+    const auto contact = RobotClearance(BoxRobot(), world).FindContact(X_MB);
+    if (!contact) continue;
+    ++num_contacts;
+    const std::string shape = contact->obstacle.substr(std::string("house::").size());
+    EXPECT_EQ(contact->source, shape + ".world:3");
+    ASSERT_TRUE(contact->p_M);
+    const auto is_near = [&](const geometry::Polygon& outline) {
+      const geometry::Polygon point{*contact->p_M, *contact->p_M + Eigen::Vector2d(1e-9, 0.0),
+                                    *contact->p_M + Eigen::Vector2d(0.0, 1e-9)};
+      return geometry::Distance(outline, point) < 1e-3;
+    };
+    EXPECT_TRUE(is_near(geometry::Transformed(X_MB, OutlineOf(BoxRobot().front(), {}))));
+    for (const geometry::Collision& part : world.statics.front().collisions) {
+      if (part.name == shape)
+        EXPECT_TRUE(is_near(OutlineOf(part, world.statics.front().X_MB))) << contact->obstacle;
+    }
+    EXPECT_EQ(ToString(*contact).rfind("hull touches house::" + shape + " at x ", 0), 0u);
+  }
+  EXPECT_GT(num_contacts, 10);
 }
 
 }  // namespace

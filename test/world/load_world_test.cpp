@@ -63,6 +63,23 @@ TEST_F(LoadWorldTest, StaticModelKeepsNameShapePoseAndSurface) {
   EXPECT_EQ(std::get<geometry::Box>(wall.collisions[0].shape).size, Eigen::Vector3d(1, 1, 1));
 }
 
+TEST_F(LoadWorldTest, ShapesAreNamedAndFoundInTheirFile) {
+  const std::string two =
+      "<link name='l'><collision name='coat_stand'><geometry>" + std::string(kUnitBox) +
+      "</geometry></collision>\n<collision name='shelf'><pose>3 0 0 0 0 0</pose><geometry>" +
+      kUnitBox + "</geometry></collision></link>";
+  const World world =
+      Load(StaticModel("house", two) + "\n" + StaticModel("wall", LinkWithShape(kUnitBox)));
+  ASSERT_EQ(world.sources.size(), 3u);
+  const auto line_of = [&](const std::string& name) {
+    const std::string& source = world.sources.at(name);
+    EXPECT_THAT(source, HasSubstr("test.world:"));
+    return std::stoi(source.substr(source.rfind(':') + 1));
+  };
+  EXPECT_EQ(line_of("house::shelf"), line_of("house::coat_stand") + 1);
+  EXPECT_GT(line_of("wall"), line_of("house::shelf"));
+}
+
 TEST_F(LoadWorldTest, CylinderAndSphereAreRead) {
   const World world =
       Load(StaticModel("a", LinkWithShape("<cylinder><radius>0.2</radius><length>0.7</length>"

@@ -15,8 +15,20 @@ namespace hires::simulation {
 /// Two things that touch.
 struct RobotContact {
   std::string robot_part;  ///< collision of the robot, "l_forearm_link"
-  std::string obstacle;    ///< static body of the world, "table1"
+  std::string obstacle;    ///< of the world, as world::NameOf: "table1", "house::coat_stand"
+  std::optional<Eigen::Vector2d> p_M{};  ///< [m] where; none: unknown
+  std::string source{};                  ///< where the obstacle stands in its file; or empty
 };
+
+/// " at x 0.15 m, y 0.00 m (hall.world:12)", as far as it is known.
+std::string PlaceText(const RobotContact& contact);
+/// "base touches house::coat_stand", and its PlaceText.
+std::string ToString(const RobotContact& contact);
+
+/// A part of the robot that touches a body; which of the body's shapes, and where, is found here.
+/// @param part_M  with its pose in the map.
+RobotContact ContactWith(const geometry::Collision& part_M, const world::StaticBody& body,
+                         const world::World& world);
 
 class TouchShape;
 
@@ -40,6 +52,7 @@ class RobotClearance {
  private:
   struct Prism {
     std::string name;
+    std::string source;  // of an obstacle
     geometry::Polygon outline;
     double z_min{0.0}, z_max{0.0};
     Eigen::Vector2d centre{0.0, 0.0};  // of a circle around the outline
@@ -47,7 +60,8 @@ class RobotClearance {
     std::shared_ptr<const TouchShape> shape;
     geometry::Pose3 X_FS;  // in the frame of the outline
   };
-  static std::optional<Prism> MakePrism(const std::string& name, const geometry::Collision& shape,
+  static std::optional<Prism> MakePrism(const std::string& name, const std::string& source,
+                                        const geometry::Collision& shape,
                                         const geometry::Pose3& X_WB);
   static bool IsExact(const Prism& part, const Prism& obstacle);
   /// Calls visit(part, obstacle, distance) for all pairs of one height that may lie within `limit`.

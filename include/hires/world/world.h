@@ -60,6 +60,9 @@ struct World {
   std::map<std::string, Eigen::AlignedBox2d> extents;  ///< as ExtentOf, of areas that say one
   std::map<std::string, std::shared_ptr<const ObjectModel>> models;  ///< by name
   WorldState initial;
+  /// Where static bodies and their shapes stand, "hall.world:12", by their names (NameOf); empty
+  /// where no file of a world has them. For people: no part of the hash.
+  std::map<std::string, std::string> sources;
   std::uint64_t hash{0};  ///< of everything but `initial`; independent of the file's layout
 
   std::optional<geometry::Pose3> FindFrame(const std::string& name) const;
@@ -76,6 +79,10 @@ struct World {
   std::shared_ptr<const ObjectModel> ModelOf(const ObjectState& object) const;
   std::uint64_t ComputeHash() const;
 };
+
+/// What a shape of a body is called: "wall"; of a body of several shapes "house::coat_stand", as
+/// far as its file gives names.
+std::string NameOf(const StaticBody& body, const geometry::Collision& shape);
 
 /// Reads an SDF world. Models with `<static>true</static>` (or one link that is fixed to the world)
 /// become StaticBody, single-link models become loose objects (one ObjectModel per distinct

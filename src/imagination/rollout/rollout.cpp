@@ -146,9 +146,8 @@ class Player {
   }
 
   base::Failure Collision() const {
-    const std::string &part = simulator_.contact()->robot_part,
-                      &obstacle = simulator_.contact()->obstacle;
-    return {Code::kRobotCollision, {part, obstacle}, part + " touches " + obstacle};
+    const simulation::RobotContact& contact = *simulator_.contact();
+    return {Code::kRobotCollision, {contact.robot_part, contact.obstacle}, ToString(contact)};
   }
 
   bool IsApart() const { return watch_ == nullptr || watch_->Look(simulator_); }

@@ -110,9 +110,7 @@ class Recorder {
     is_late_ = is_late;
     if (simulator.contact() && !touches_) {
       touches_ = true;
-      Say(Kind::kContact, last_look_,
-          fmt::format("{} touches {}", simulator.contact()->robot_part,
-                      simulator.contact()->obstacle));
+      Say(Kind::kContact, last_look_, ToString(*simulator.contact()));
     }
   }
 

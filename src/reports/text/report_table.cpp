@@ -20,15 +20,20 @@ bool IsNumber(const std::string& text) {
   return !text.empty() && (std::isdigit(static_cast<unsigned char>(text[0])) || text[0] == '-');
 }
 
-/// A cell has no room for a sentence: that stands below the table.
+/// A cell has no room for a sentence, nor for where things touch: that stands below the table.
 bool HasSentence(const base::Failure& failure) {
   constexpr std::size_t kLongestInCell = 48;
-  return failure.detail.size() > kLongestInCell;
+  return failure.detail.size() > kLongestInCell ||
+         failure.code == base::FailureCode::kRobotCollision;
 }
 
 std::string InCell(const base::Failure& failure) {
   if (!HasSentence(failure)) return base::ToString(failure);
-  return base::ToString(base::Failure(failure.code, failure.subjects));
+  base::Failure shown(failure.code, failure.subjects);
+  const bool is_touch = failure.code == base::FailureCode::kRobotCollision;
+  if (is_touch && failure.subjects.size() == 2)
+    shown.detail = failure.subjects[0] + " touches " + failure.subjects[1];
+  return base::ToString(shown);
 }
 
 std::string Failures(const imagination::Evidence& evidence) {

@@ -1,5 +1,7 @@
 #include "hires/simulation/robot_clearance.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -25,9 +27,70 @@ bool IsOutside(const geometry::Polygon& outline, const Eigen::Vector2d& centre, 
   return false;
 }
 
+/// The middle of what two convex outlines share, corners and crossings of edges taken together;
+/// nothing where they share nothing.
+std::optional<Eigen::Vector2d> MiddleOfBoth(const geometry::Polygon& a,
+                                            const geometry::Polygon& b) {
+  std::vector<Eigen::Vector2d> shared;
+  for (const Eigen::Vector2d& p : a)
+    if (geometry::Contains(b, p)) shared.push_back(p);
+  for (const Eigen::Vector2d& p : b)
+    if (geometry::Contains(a, p)) shared.push_back(p);
+  const auto cross = [](const Eigen::Vector2d& u, const Eigen::Vector2d& v) {
+    return u.x() * v.y() - u.y() * v.x();
+  };
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    const Eigen::Vector2d along_a = a[(i + 1) % a.size()] - a[i];
+    for (std::size_t k = 0; k < b.size(); ++k) {
+      const Eigen::Vector2d along_b = b[(k + 1) % b.size()] - b[k];
+      const double turn = cross(along_a, along_b);
+      if (turn == 0.0) continue;
+      const double s = cross(b[k] - a[i], along_b) / turn;
+      const double t = cross(b[k] - a[i], along_a) / turn;
+      if (s >= 0.0 && s <= 1.0 && t >= 0.0 && t <= 1.0) shared.push_back(a[i] + s * along_a);
+    }
+  }
+  if (shared.empty()) return std::nullopt;
+  Eigen::Vector2d middle = Eigen::Vector2d::Zero();
+  for (const Eigen::Vector2d& p : shared) middle += p / static_cast<double>(shared.size());
+  return middle;
+}
+
+std::string SourceOf(const std::string& name, const world::World& world) {
+  const auto found = world.sources.find(name);
+  return found == world.sources.end() ? "" : found->second;
+}
+
 }  // namespace
 
+std::string ToString(const RobotContact& contact) {
+  return contact.robot_part + " touches " + contact.obstacle + PlaceText(contact);
+}
+
+std::string PlaceText(const RobotContact& contact) {
+  std::string text;
+  if (contact.p_M)
+    text = fmt::format(" at x {:.2f} m, y {:.2f} m", contact.p_M->x(), contact.p_M->y());
+  if (!contact.source.empty()) text += fmt::format(" ({})", contact.source);
+  return text;
+}
+
+RobotContact ContactWith(const geometry::Collision& part_M, const world::StaticBody& body,
+                         const world::World& world) {
+  const TouchShape part(part_M.shape);
+  for (const geometry::Collision& shape : body.collisions) {
+    const TouchShape obstacle(shape.shape);
+    const geometry::Pose3 X_MS = body.X_MB * shape.X_BS;
+    if (!part.Touches(part_M.X_BS, obstacle, X_MS)) continue;
+    const std::string name = world::NameOf(body, shape);
+    return {part_M.name, name, part.MeetingPoint(part_M.X_BS, obstacle, X_MS).head<2>(),
+            SourceOf(name, world)};
+  }
+  return {part_M.name, body.name};  // which touch by a hair, as others count
+}
+
 std::optional<RobotClearance::Prism> RobotClearance::MakePrism(const std::string& name,
+                                                               const std::string& source,
                                                                const geometry::Collision& shape,
                                                                const geometry::Pose3& X_WB) {
   const geometry::Pose3 X_WS = X_WB * shape.X_BS;
@@ -36,6 +99,7 @@ std::optional<RobotClearance::Prism> RobotClearance::MakePrism(const std::string
       geometry::OutlineInBand(shape.shape, X_WS, bounds.lower.z(), bounds.upper.z());
   if (!outline) return std::nullopt;
   Prism prism{name,
+              source,
               *outline,
               bounds.lower.z(),
               bounds.upper.z(),
@@ -53,14 +117,15 @@ std::optional<RobotClearance::Prism> RobotClearance::MakePrism(const std::string
 RobotClearance::RobotClearance(const std::vector<geometry::Collision>& robot_B,
                                const world::World& world) {
   for (const geometry::Collision& part : robot_B) {
-    if (auto prism = MakePrism(part.name, part, {})) {
+    if (auto prism = MakePrism(part.name, "", part, {})) {
       robot_radius_ = std::max(robot_radius_, geometry::CircumscribedRadius(prism->outline));
       robot_.push_back(*std::move(prism));
     }
   }
   for (const world::StaticBody& body : world.statics) {
     for (const geometry::Collision& shape : body.collisions) {
-      if (auto prism = MakePrism(body.name, shape, body.X_MB)) {
+      const std::string name = world::NameOf(body, shape);
+      if (auto prism = MakePrism(name, SourceOf(name, world), shape, body.X_MB)) {
         obstacles_.push_back(*std::move(prism));
       }
     }
@@ -101,7 +166,13 @@ std::optional<RobotContact> RobotClearance::FindContact(const geometry::Pose2& X
         !part.shape->Touches(X_MF * part.X_FS, *obstacle.shape, obstacle.X_FS)) {
       return true;
     }
-    contact = RobotContact{part.name, obstacle.name};
+    contact = RobotContact{part.name, obstacle.name, {}, obstacle.source};
+    if (IsExact(part, obstacle)) {
+      contact->p_M = MiddleOfBoth(geometry::Transformed(X_MB, part.outline), obstacle.outline);
+    } else {
+      contact->p_M = part.shape->MeetingPoint(X_MF * part.X_FS, *obstacle.shape, obstacle.X_FS)
+                         .template head<2>();
+    }
     return false;
   });
   return contact;

@@ -117,6 +117,18 @@ bool TouchShape::Touches(const geometry::Pose3& X_MS, const TouchShape& other,
          other.Contains(X_SO.Inverse() * geometry_->point);
 }
 
+Eigen::Vector3d TouchShape::MeetingPoint(const geometry::Pose3& X_MS, const TouchShape& other,
+                                         const geometry::Pose3& X_MO) const {
+  const fcl::CollisionRequestd request(1, true);  // one contact, with its place
+  fcl::CollisionResultd result;
+  if (fcl::collide(geometry_->solid.get(), ToIsometry(X_MS), other.geometry_->solid.get(),
+                   ToIsometry(X_MO), request, result) > 0) {
+    return result.getContact(0).pos;
+  }
+  const Eigen::Vector3d p_M = X_MO * other.geometry_->point;  // one lies within the other
+  return Contains(X_MS.Inverse() * p_M) ? p_M : X_MS * geometry_->point;
+}
+
 double TouchShape::Distance(const geometry::Pose3& X_MS, const TouchShape& other,
                             const geometry::Pose3& X_MO) const {
   if (Touches(X_MS, other, X_MO)) return 0.0;

@@ -20,6 +20,9 @@ class TouchShape {
   bool is_mesh() const { return is_mesh_; }
   bool Touches(const geometry::Pose3& X_MS, const TouchShape& other,
                const geometry::Pose3& X_MO) const;
+  /// A point of both. @pre they touch.
+  Eigen::Vector3d MeetingPoint(const geometry::Pose3& X_MS, const TouchShape& other,
+                               const geometry::Pose3& X_MO) const;
   /// [m] 0 where they touch.
   double Distance(const geometry::Pose3& X_MS, const TouchShape& other,
                   const geometry::Pose3& X_MO) const;
