@@ -192,6 +192,23 @@ std::vector<geometry::Polygon> OutlinesInBand(const World& world, const WorldSta
   return outlines;
 }
 
+std::vector<NamedOutline> NamedOutlinesInBand(const World& world, double z_min, double z_max) {
+  std::vector<NamedOutline> named;
+  for (const StaticBody& body : world.statics) {
+    for (const geometry::Collision& shape : body.collisions) {
+      std::vector<geometry::Polygon> outlines;
+      AppendStatic({body.name, body.X_MB, {shape}}, z_min, z_max, &outlines);
+      const std::string name = NameOf(body, shape);
+      const auto source = world.sources.find(name);
+      for (geometry::Polygon& outline : outlines) {
+        named.push_back(
+            {name, source == world.sources.end() ? "" : source->second, std::move(outline)});
+      }
+    }
+  }
+  return named;
+}
+
 OccupancyGrid SliceWorld(const World& world, double z_min, double z_max, double resolution,
                          double margin) {
   HIRES_CHECK(resolution > 0.0 && std::isfinite(resolution), "a cell has an edge above 0 m");

@@ -179,7 +179,7 @@ TEST(CommandLineTest, AllFailingHasItsOwnCode) {
                                        "--rollouts", "2", "--min-success", "0.85"});
   EXPECT_EQ(ended.code, kExitAllFailed) << ended.err;
   EXPECT_THAT(ended.out, AllOf(HasSubstr("all_failed"), HasSubstr("goal_blocked 2"),
-                               HasSubstr("goal_blocked: move_base(inside): in every rollout")));
+                               HasSubstr("goal_blocked: move_base(inside): the goal at x ")));
 }
 
 TEST(CommandLineTest, TwoRolloutsDecideNothing) {

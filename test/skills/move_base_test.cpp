@@ -55,7 +55,7 @@ void ExpectArrivedAt(const Pose2& goal, const SkillRun& run) {
 
 void ExpectFailed(const std::string& reason, const SkillRun& run) {
   EXPECT_EQ(run.status.progress, Progress::kFailed);
-  EXPECT_EQ(ToString(run.status.failure), reason);
+  EXPECT_EQ(ToString(run.status.failure.code), reason);
 }
 
 TEST(MoveBaseTest, ArrivesAtItsGoal) {

@@ -59,10 +59,14 @@ struct DrivingContext {
   geometry::Polygon base;       ///< outline of what drives, without arms: robot::BaseOutlineOf
   MoveBaseParams params;
   std::vector<MarginMap> with_margin;  ///< the widest first; none: nothing but the map's own
+  /// What of a world stands where it may be in the way, by name; null for a map.
+  std::shared_ptr<const std::vector<world::NamedOutline>> obstacles;
 
   std::optional<MapByPlane> by_plane;           ///< with an obstacle layer
   std::shared_ptr<const SeenPlace> seen_place;  ///< of a world, where asked for; else null
 };
+
+struct NarrowPlace;
 
 /// The footprint of a robot that does not have its arms where they are for driving: the padded
 /// footprint, and what sticks out of it in this posture, padded as well. A body of one height, as
@@ -103,6 +107,8 @@ class MoveBase : public Skill {
   std::optional<Status> Plan(const robot::Observation& observation);
   navigation::PathStatus FindPath(const navigation::Costmap& costmap, const geometry::Pose2& X_MB,
                                   double margin = 0.0);
+  navigation::PathResult FindWayThatIsWide(const navigation::Costmap& costmap,
+                                           const geometry::Pose2& X_MB);
   bool IsAtGoal(const robot::Observation& observation) const;
   void PlanAnewIfStuck(const robot::Observation& observation);
   bool NoteMotion(const robot::Observation& observation);
@@ -135,8 +141,9 @@ class MoveBase : public Skill {
   geometry::Pose2 X_MMoved_;                        // where it last counted as having moved
   double last_moved_{0.0};                          // [s]
   int oscillations_{0};
-  std::ptrdiff_t least_left_{0};  // so many poses of the path were left; 0: it is new
-  double last_nearer_{0.0};       // [s] when that became less
+  std::shared_ptr<const NarrowPlace> narrow_;  // where the last search found it too wide; or null
+  std::ptrdiff_t least_left_{0};               // so many poses of the path were left; 0: it is new
+  double last_nearer_{0.0};                    // [s] when that became less
   int num_missed_{0};  // ways that a car was given because the one before ended out of tolerance
 };
 

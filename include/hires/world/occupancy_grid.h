@@ -30,6 +30,15 @@ struct OccupancyGrid {
 std::vector<geometry::Polygon> OutlinesInBand(const World& world, const WorldState* objects,
                                               double z_min, double z_max);
 
+/// What stands somewhere, by the name that its file gives it (NameOf) and where that stands.
+struct NamedOutline {
+  std::string name;
+  std::string source;  ///< "hall.world:12", or empty
+  geometry::Polygon outline_M;
+};
+/// Outlines of all static bodies as above.
+std::vector<NamedOutline> NamedOutlinesInBand(const World& world, double z_min, double z_max);
+
 /// Occupied are the cells that a static body touches within z_min..z_max (equal: a slice, as the
 /// laser sees it); all others are free. Covers all static bodies plus `margin` [m].
 OccupancyGrid SliceWorld(const World& world, double z_min, double z_max, double resolution = 0.05,

@@ -6,6 +6,7 @@
 #include "hires/base/error.h"
 #include "hires/geometry/angles.h"
 #include "hires/robot/echoes.h"
+#include "skills/driving/way_blocked.h"
 #include "skills/posture_skills.h"
 
 namespace hires::skills {
@@ -144,6 +145,8 @@ DrivingContext MakeDrivingContext(const world::World& world, const robot::Robot&
   const world::OccupancyGrid map = world::SliceWorld(
       world, params.min_obstacle_height, RobotHeight(robot), params.map_resolution, margin);
   DrivingContext context = ContextOf(map, robot, params);
+  context.obstacles = std::make_shared<const std::vector<world::NamedOutline>>(
+      world::NamedOutlinesInBand(world, params.min_obstacle_height, RobotHeight(robot)));
   if (!params.obstacle_layer && !params.seen_place) return context;
   const double plane = LaserPlane(robot);
   if (params.obstacle_layer) {
@@ -221,7 +224,7 @@ void MoveBase::Begin(const robot::Observation& observation) {
 navigation::PathStatus MoveBase::FindPath(const navigation::Costmap& costmap, const Pose2& X_MB,
                                           double margin) {
   if (!car_) {
-    auto found = navigation::PlanPath(costmap, X_MB, X_MGoal_, context_->params.planner);
+    auto found = FindWayThatIsWide(costmap, X_MB);
     if (found.status != navigation::PathStatus::kFound) return found.status;
     path_ = std::make_shared<const std::vector<Pose2>>(std::move(found.path));
     local_.SetPath(*path_);
@@ -239,6 +242,38 @@ navigation::PathStatus MoveBase::FindPath(const navigation::Costmap& costmap, co
   path_ = std::make_shared<const std::vector<Pose2>>(std::move(poses));
   car_->SetPath(std::move(found.path));
   return found.status;
+}
+
+/// Where the footprint is too wide for a passage, the way round it, with room to both sides where
+/// there is such a one; the cheapest way otherwise.
+navigation::PathResult MoveBase::FindWayThatIsWide(const navigation::Costmap& costmap,
+                                                   const Pose2& X_MB) {
+  constexpr int kMostPassages = 8;
+  const navigation::AStarParams& planner = context_->params.planner;
+  auto found = navigation::PlanPath(costmap, X_MB, X_MGoal_, planner);
+  narrow_.reset();
+  if (found.status != navigation::PathStatus::kFound) return found;
+  auto narrow = FindTooNarrow(costmap, footprint_, found.path);
+  if (!narrow) return found;
+  narrow_ = std::make_shared<const NarrowPlace>(*narrow);
+  double half_width = 0.0;
+  for (const Eigen::Vector2d& p : footprint_) half_width = std::max(half_width, std::abs(p.y()));
+  auto roomy =
+      navigation::PlanPath(costmap.WithInscribedRadius(half_width), X_MB, X_MGoal_, planner);
+  if (roomy.status == navigation::PathStatus::kFound &&
+      !FindTooNarrow(costmap, footprint_, roomy.path))
+    return roomy;
+  navigation::Costmap closed = costmap;
+  for (int i = 0; narrow && i < kMostPassages; ++i) {
+    closed = WithClosed(closed, *narrow);
+    found = navigation::PlanPath(closed, X_MB, X_MGoal_, planner);
+    if (found.status != navigation::PathStatus::kFound) {
+      found.status = navigation::PathStatus::kNoPath;
+      return found;
+    }
+    narrow = FindTooNarrow(costmap, footprint_, found.path);
+  }
+  return found;
 }
 
 navigation::Costmap MoveBase::MapWithMarks(const robot::Observation& observation) const {
@@ -279,11 +314,17 @@ std::optional<Status> MoveBase::Plan(const robot::Observation& observation) {
   if (!sensed_) now_ = map;
   switch (FindPath(*map, observation.X_MB)) {
     case navigation::PathStatus::kStartBlocked:
-      return Failed(base::FailureCode::kStartBlocked);
+      return Failed({base::FailureCode::kStartBlocked,
+                     {},
+                     WhyBlocked(*context_, *map, "start", observation.X_MB)});
     case navigation::PathStatus::kGoalBlocked:
-      return Failed(base::FailureCode::kGoalBlocked);
+      return Failed(
+          {base::FailureCode::kGoalBlocked, {}, WhyBlocked(*context_, *map, "goal", X_MGoal_)});
     case navigation::PathStatus::kNoPath:
-      return Failed(base::FailureCode::kNoPath);
+      return Failed({base::FailureCode::kNoPath,
+                     {},
+                     WhyNoPath(*context_, *map, observation.X_MB, X_MGoal_,
+                               narrow_ ? std::optional<NarrowPlace>(*narrow_) : std::nullopt)});
     case navigation::PathStatus::kFound:
       break;
   }

@@ -175,20 +175,6 @@ class ProgressDisplay {
   std::chrono::steady_clock::time_point next_line_{};
 };
 
-/// A goal that is never free is no question of chance: most likely the area lies in furniture.
-void PrintBlockedGoals(const std::vector<imagination::Prediction>& ranking) {
-  for (const imagination::Prediction& prediction : ranking) {
-    const imagination::Evidence& evidence = prediction.evidence;
-    const base::Failure blocked = base::FailureCode::kGoalBlocked;
-    const auto found = evidence.failures.find(blocked);
-    if (found == evidence.failures.end() || found->second < evidence.num_rollouts) continue;
-    std::cout << fmt::format(
-        "{}: {}: in every rollout something stands where the robot should come to, or it is too "
-        "narrow for its base; correct the area or choose another one\n",
-        ToString(blocked), ToString(prediction.action));
-  }
-}
-
 void PrintReport(const imagination::Report& report, imagination::RankingRule rule) {
   if (!report.ranking.empty()) {
     const bool with_cost = rule == imagination::RankingRule::kCost;
@@ -198,7 +184,6 @@ void PrintReport(const imagination::Report& report, imagination::RankingRule rul
   }
   std::cout << fmt::format("{}: {}\n", reports::OutcomeName(report), report.why);
   std::cout << reports::FailureLines(report.ranking);
-  PrintBlockedGoals(report.ranking);
   for (const std::string& caveat : report.caveats) std::cout << "caveat: " << caveat << '\n';
   if (report.kept.rollouts > 0) {
     std::cout << fmt::format("{} rollouts, {:.0f} s, are those of an earlier request\n",

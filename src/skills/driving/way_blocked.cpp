@@ -1,0 +1,405 @@
+#include "skills/driving/way_blocked.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <queue>
+#include <utility>
+
+#include "hires/geometry/angles.h"
+#include "hires/robot/robot_model.h"
+
+namespace hires::skills {
+namespace {
+
+using geometry::Pose2;
+using navigation::Costmap;
+
+constexpr double kDrivenHeading = 0.52;    // [rad] by which a drive's heading is off its way's
+constexpr double kHeadingStep = 0.035;     // [rad]
+constexpr double kStraightWay = 0.3;       // [m] before and behind the middle of a passage
+constexpr double kPlaceSteps = 4.0;        // places tried per cell
+constexpr double kSlack = 0.03;            // [m] that lies between what is tried
+constexpr double kFarthestSide = 5.0;      // [m] to either side; what is wider is not narrow
+constexpr double kFarthestObstacle = 2.0;  // [m] from a place that it blocks
+
+double WidthOf(const geometry::Polygon& footprint) {
+  double lowest = 0.0, highest = 0.0;
+  for (const Eigen::Vector2d& p : footprint) {
+    lowest = std::min(lowest, p.y());
+    highest = std::max(highest, p.y());
+  }
+  return highest - lowest;
+}
+
+bool IsObstacle(const Costmap& costmap, const Eigen::Vector2d& p_M) {
+  int column = 0, row = 0;
+  costmap.CellOf(p_M, &column, &row);
+  return !costmap.Inside(column, row) || costmap.cost(column, row) >= navigation::kLethalCost;
+}
+
+/// [m] from a point in a direction to where an obstacle's cell begins.
+double FreeTowards(const Costmap& costmap, const Eigen::Vector2d& p_M,
+                   const Eigen::Vector2d& along) {
+  const double step = costmap.resolution() / kPlaceSteps;
+  double free = 0.0;
+  while (free < kFarthestSide && !IsObstacle(costmap, p_M + (free + step) * along)) free += step;
+  return free;
+}
+
+/// A footprint that is smaller by what lies between two places or headings that are tried.
+geometry::Polygon Shrunk(const geometry::Polygon& footprint) {
+  const double radius = geometry::CircumscribedRadius(footprint);
+  geometry::Polygon shrunk = footprint;
+  for (Eigen::Vector2d& p : shrunk) p *= std::max(0.0, 1.0 - kSlack / radius);
+  return shrunk;
+}
+
+/// Across the way: the direction in which a place is narrowest.
+struct Cut {
+  Eigen::Vector2d left{0.0, 1.0};
+  double to_left{0.0}, to_right{0.0};  // [m] free
+  double width() const { return to_left + to_right; }
+  double yaw() const { return std::atan2(-left.x(), left.y()); }
+};
+
+Cut NarrowestCut(const Costmap& costmap, const Eigen::Vector2d& p_M, double yaw) {
+  constexpr int kDirections = 36;
+  Cut narrowest;
+  for (int i = 0; i < kDirections; ++i) {
+    const double turned = yaw + geometry::kPi * (i / static_cast<double>(kDirections) - 0.5);
+    Cut cut{{-std::sin(turned), std::cos(turned)}, 0.0, 0.0};
+    cut.to_left = FreeTowards(costmap, p_M, cut.left);
+    cut.to_right = FreeTowards(costmap, p_M, -cut.left);
+    if (i == 0 || cut.width() < narrowest.width()) narrowest = cut;
+  }
+  return narrowest;
+}
+
+/// Whether the path goes straight on through a cut: at a bend a base may turn as it passes.
+bool GoesStraight(const std::vector<Pose2>& path, std::size_t at, double yaw) {
+  constexpr double kChord = 0.6;     // [m]
+  constexpr double kStraight = 0.9;  // [rad]
+  const Eigen::Vector2d here = path[at].position();
+  std::size_t before = at, after = at;
+  while (before > 0 && (path[before].position() - here).norm() < kChord) --before;
+  while (after + 1 < path.size() && (path[after].position() - here).norm() < kChord) ++after;
+  const auto is_along = [&](const Eigen::Vector2d& chord) {
+    return std::abs(geometry::WrapToPi(std::atan2(chord.y(), chord.x()) - yaw)) < kStraight;
+  };
+  return is_along(here - path[before].position()) && is_along(path[after].position() - here);
+}
+
+/// Whether it drives straight on through a place, a little before and behind it, too: a base does
+/// not wind itself through.
+bool DrivesThrough(const Costmap& costmap, const geometry::Polygon& footprint, const Pose2& X_MB) {
+  for (double way = 0.0; way <= kStraightWay; way += costmap.resolution()) {
+    for (const double x : {way, -way}) {
+      if (costmap.FootprintCost(footprint, X_MB * Pose2{x, 0.0, 0.0}) >= navigation::kLethalCost)
+        return false;
+    }
+  }
+  return true;
+}
+
+bool FitsAt(const Costmap& costmap, const geometry::Polygon& footprint, const Eigen::Vector2d& p_M,
+            double yaw) {
+  for (double off = 0.0; off <= kDrivenHeading; off += kHeadingStep) {
+    for (const double heading : {yaw + off, yaw - off}) {
+      if (DrivesThrough(costmap, footprint, {p_M.x(), p_M.y(), heading})) return true;
+    }
+  }
+  return false;
+}
+
+/// Places across the way, from its middle outwards.
+bool FitsAcross(const Costmap& costmap, const geometry::Polygon& footprint,
+                const Eigen::Vector2d& middle, const Cut& cut) {
+  const double step = costmap.resolution() / kPlaceSteps;
+  for (double y = 0.0; y <= 0.5 * cut.width(); y += step) {
+    if (FitsAt(costmap, footprint, middle + y * cut.left, cut.yaw()) ||
+        FitsAt(costmap, footprint, middle - y * cut.left, cut.yaw()))
+      return true;
+  }
+  return false;
+}
+
+/// What is said of a drive's map.
+class Explainer {
+ public:
+  Explainer(const DrivingContext& context, const Costmap& costmap)
+      : context_(context), costmap_(costmap) {}
+
+  bool IsUnknown(const Eigen::Vector2d& p_M) const {
+    int column = 0, row = 0;
+    costmap_.CellOf(p_M, &column, &row);
+    return costmap_.Inside(column, row) && costmap_.cost(column, row) == navigation::kUnknownCost;
+  }
+
+  bool IsOutside(const Eigen::Vector2d& p_M) const {
+    int column = 0, row = 0;
+    costmap_.CellOf(p_M, &column, &row);
+    return !costmap_.Inside(column, row);
+  }
+
+  /// The middle of the nearest cell that is no room, within kFarthestObstacle.
+  std::optional<Eigen::Vector2d> NearestObstacle(const Eigen::Vector2d& p_M) const {
+    const int reach = static_cast<int>(kFarthestObstacle / costmap_.resolution());
+    int column = 0, row = 0;
+    costmap_.CellOf(p_M, &column, &row);
+    std::optional<Eigen::Vector2d> nearest;
+    double least = std::numeric_limits<double>::infinity();
+    for (int y = row - reach; y <= row + reach; ++y) {
+      for (int x = column - reach; x <= column + reach; ++x) {
+        if (!costmap_.Inside(x, y) || costmap_.cost(x, y) < navigation::kLethalCost) continue;
+        const double distance = (costmap_.CentreOf(x, y) - p_M).squaredNorm();
+        if (distance >= least) continue;
+        least = distance;
+        nearest = costmap_.CentreOf(x, y);
+      }
+    }
+    return nearest;
+  }
+
+  /// "'wall::c0'", "unmapped ground", "a wall of the map": what has the cell there.
+  std::string WhatIsAt(const Eigen::Vector2d& cell_M) const {
+    if (IsUnknown(cell_M)) return "unmapped (unknown) ground";
+    const double half = 0.5 * costmap_.resolution();
+    const geometry::Polygon cell{
+        cell_M + Eigen::Vector2d(-half, -half), cell_M + Eigen::Vector2d(half, -half),
+        cell_M + Eigen::Vector2d(half, half), cell_M + Eigen::Vector2d(-half, half)};
+    if (!context_.obstacles) return "a wall of the map";
+    const world::NamedOutline* nearest = nullptr;
+    double least = costmap_.resolution();
+    for (const world::NamedOutline& obstacle : *context_.obstacles) {
+      const double distance = geometry::Distance(obstacle.outline_M, cell);
+      if (nearest != nullptr && distance >= least) continue;
+      if (distance > least) continue;
+      nearest = &obstacle;
+      least = distance;
+    }
+    if (nearest == nullptr) return "a thing that stands about";
+    const std::string source = nearest->source.empty() ? "" : " (" + nearest->source + ")";
+    return fmt::format("'{}'{}", nearest->name, source);
+  }
+
+  /// [m] of free room through a place, in the direction of what is nearest; none: it is wide.
+  std::optional<double> WidthAt(const Eigen::Vector2d& p_M,
+                                const Eigen::Vector2d& nearest_M) const {
+    const Eigen::Vector2d towards = nearest_M - p_M;
+    if (towards.norm() < 1e-9) return std::nullopt;
+    const Eigen::Vector2d along = towards.normalized();
+    const double ahead = FreeTowards(costmap_, p_M, along);
+    const double behind = FreeTowards(costmap_, p_M, -along);
+    if (behind >= kFarthestSide || ahead >= kFarthestSide) return std::nullopt;
+    return ahead + behind;
+  }
+
+  double NeededWidth() const { return 2.0 * geometry::InscribedRadius(context_.footprint); }
+
+  /// "the base 0.53 m wide, link 'arm' makes it so wide".
+  std::string BaseText(double width) const {
+    return fmt::format("the base is {:.2f} m wide{}", width, WidestLink());
+  }
+
+ private:
+  /// The link that reaches farthest to a side, where another one is the base.
+  std::string WidestLink() const {
+    const robot::Robot& robot = *context_.robot;
+    const robot::RobotModel& model = robot.model;
+    const auto X_RL = robot::ForwardKinematics(model, robot.profile.joints);
+    const geometry::Pose3 X_BR = X_RL[*model.FindLink(robot.profile.base_link)].Inverse();
+    double farthest = 0.0;
+    std::string widest;
+    for (std::size_t i = 0; i < model.links.size(); ++i) {
+      for (const geometry::Collision& shape : model.links[i].collisions) {
+        const auto bounds = geometry::BoundsOf(shape.shape, X_BR * (X_RL[i] * shape.X_BS));
+        const double side = std::max(-bounds.lower.y(), bounds.upper.y());
+        if (side <= farthest + 1e-6) continue;
+        farthest = side;
+        widest = model.links[i].name;
+      }
+    }
+    return widest.empty() ? "" : fmt::format(" with its padding ('{}' reaches farthest)", widest);
+  }
+
+  const DrivingContext& context_;
+  const Costmap& costmap_;
+};
+
+/// From start to goal through what is in the way, through as little as can be.
+class Intrusion {
+ public:
+  explicit Intrusion(const Costmap& costmap) : costmap_(costmap) {
+    const std::size_t size = static_cast<std::size_t>(costmap.width()) * costmap.height();
+    cost_.assign(size, std::numeric_limits<double>::infinity());
+    parent_.assign(size, -1);
+  }
+
+  /// Cells from start to goal; empty where one of them is outside.
+  std::vector<Eigen::Vector2d> Find(const Pose2& X_MStart, const Pose2& X_MGoal) {
+    const int start = IndexOf(X_MStart), goal = IndexOf(X_MGoal);
+    if (start < 0 || goal < 0) return {};
+    open_.push({0.0, start});
+    cost_[start] = 0.0;
+    while (!open_.empty() && open_.top().second != goal) Expand();
+    std::vector<Eigen::Vector2d> cells;
+    for (int at = goal; at >= 0; at = parent_[at]) cells.push_back(CentreOf(at));
+    std::reverse(cells.begin(), cells.end());
+    return cells;
+  }
+
+ private:
+  static constexpr double kNarrow = 1e3, kSolid = 1e6;  // what a cell costs that is no room
+
+  int IndexOf(const Pose2& X_MB) const {
+    int column = 0, row = 0;
+    costmap_.CellOf(X_MB.position(), &column, &row);
+    return costmap_.Inside(column, row) ? row * costmap_.width() + column : -1;
+  }
+  Eigen::Vector2d CentreOf(int cell) const {
+    return costmap_.CentreOf(cell % costmap_.width(), cell / costmap_.width());
+  }
+  double CostOf(int column, int row) const {
+    const std::uint8_t cost = costmap_.cost(column, row);
+    return cost >= navigation::kLethalCost      ? kSolid
+           : cost >= navigation::kInscribedCost ? kNarrow
+                                                : 1.0;
+  }
+  void Expand() {
+    const auto [cost, cell] = open_.top();
+    open_.pop();
+    if (cost > cost_[cell]) return;
+    const int column = cell % costmap_.width(), row = cell / costmap_.width();
+    for (int dy = -1; dy <= 1; ++dy) {
+      for (int dx = -1; dx <= 1; ++dx) {
+        if (!costmap_.Inside(column + dx, row + dy)) continue;
+        const int next = (row + dy) * costmap_.width() + column + dx;
+        const double more = CostOf(column + dx, row + dy) * (dx != 0 && dy != 0 ? M_SQRT2 : 1.0);
+        if (cost + more >= cost_[next]) continue;
+        cost_[next] = cost + more;
+        parent_[next] = cell;
+        open_.push({cost_[next], next});
+      }
+    }
+  }
+
+  using Open = std::pair<double, int>;
+  const Costmap& costmap_;
+  std::vector<double> cost_;
+  std::vector<int> parent_;
+  std::priority_queue<Open, std::vector<Open>, std::greater<>> open_;
+};
+
+std::uint8_t CostAt(const Costmap& costmap, const Eigen::Vector2d& p_M) {
+  int column = 0, row = 0;
+  costmap.CellOf(p_M, &column, &row);
+  return costmap.cost(column, row);
+}
+
+}  // namespace
+
+std::optional<NarrowPlace> FindTooNarrow(const Costmap& costmap, const geometry::Polygon& footprint,
+                                         const std::vector<Pose2>& path) {
+  const double reach = geometry::CircumscribedRadius(footprint);
+  const geometry::Polygon shrunk = Shrunk(footprint);
+  for (std::size_t i = 0; i < path.size(); ++i) {
+    const Pose2& pose = path[i];
+    const bool is_at_end = (pose.position() - path.front().position()).norm() <= reach ||
+                           (pose.position() - path.back().position()).norm() <= reach;
+    if (is_at_end || costmap.FootprintCost(shrunk, pose) < navigation::kLethalCost) continue;
+    const Cut cut = NarrowestCut(costmap, pose.position(), pose.yaw);
+    if (cut.width() >= 2.0 * reach || !GoesStraight(path, i, cut.yaw())) continue;
+    const Eigen::Vector2d middle = pose.position() + 0.5 * (cut.to_left - cut.to_right) * cut.left;
+    if (FitsAcross(costmap, shrunk, middle, cut)) continue;
+    return NarrowPlace{{middle.x(), middle.y(), cut.yaw()}, cut.width(), WidthOf(footprint)};
+  }
+  return std::nullopt;
+}
+
+Costmap WithClosed(const Costmap& costmap, const NarrowPlace& place) {
+  const Eigen::Vector2d left(-std::sin(place.X_MW.yaw), std::cos(place.X_MW.yaw));
+  const double half = 0.5 * place.width + costmap.resolution();
+  std::vector<Eigen::Vector2d> points;
+  for (double y = -half; y <= half; y += 0.5 * costmap.resolution())
+    points.push_back(place.X_MW.position() + y * left);
+  return costmap.WithObstaclesAt(points);
+}
+
+std::string WhyBlocked(const DrivingContext& context, const Costmap& costmap,
+                       const std::string& place, const Pose2& X_MB) {
+  const Explainer explainer(context, costmap);
+  const Eigen::Vector2d p_M = X_MB.position();
+  const std::string where =
+      fmt::format("the {} at x {:.2f} m, y {:.2f} m", place, p_M.x(), p_M.y());
+  if (explainer.IsOutside(p_M)) {
+    const Eigen::Vector2d lower = costmap.origin();
+    const Eigen::Vector2d upper =
+        lower + costmap.resolution() * Eigen::Vector2d(costmap.width(), costmap.height());
+    return fmt::format("{} lies outside of the map, x {:.2f} .. {:.2f} m, y {:.2f} .. {:.2f} m",
+                       where, lower.x(), upper.x(), lower.y(), upper.y());
+  }
+  if (explainer.IsUnknown(p_M))
+    return fmt::format("{} is unmapped (unknown) in the map; map it, or choose another place",
+                       where);
+  const auto nearest = explainer.NearestObstacle(p_M);
+  if (!nearest) return fmt::format("{} is not free", where);
+  const std::string what = explainer.WhatIsAt(*nearest);
+  const double distance = (*nearest - p_M).norm();
+  if (distance <= costmap.resolution())
+    return fmt::format("{} lies in {}; choose another place, or move it", where, what);
+  const double needed = explainer.NeededWidth();
+  const auto width = explainer.WidthAt(p_M, *nearest);
+  if (width && *width < needed) {
+    return fmt::format("{} is too narrow, {:.2f} m wide beside {}; {}", where, *width, what,
+                       explainer.BaseText(needed));
+  }
+  return fmt::format("{} is {:.2f} m from {}, wanted at least {:.2f} m; {}", where,
+                     std::max(0.0, distance - 0.5 * costmap.resolution()), what, 0.5 * needed,
+                     explainer.BaseText(needed));
+}
+
+std::string WhyNoPath(const DrivingContext& context, const Costmap& costmap, const Pose2& X_MStart,
+                      const Pose2& X_MGoal, const std::optional<NarrowPlace>& narrow) {
+  const Explainer explainer(context, costmap);
+  const auto ends_at = [](const Eigen::Vector2d& p_M) {
+    return fmt::format("the way ends at x {:.2f} m, y {:.2f} m", p_M.x(), p_M.y());
+  };
+  const auto too_narrow = [&](const Eigen::Vector2d& p_M, double width, double needed) {
+    const auto nearest = explainer.NearestObstacle(p_M);
+    return fmt::format("{}: it is {:.2f} m wide there{}; {}", ends_at(p_M), width,
+                       nearest ? " beside " + explainer.WhatIsAt(*nearest) : "",
+                       explainer.BaseText(needed));
+  };
+  if (narrow) return too_narrow(narrow->X_MW.position(), narrow->width, narrow->footprint_width);
+  const std::vector<Eigen::Vector2d> cells = Intrusion(costmap).Find(X_MStart, X_MGoal);
+  const auto is_room = [&](const Eigen::Vector2d& p_M) {
+    return CostAt(costmap, p_M) < navigation::kInscribedCost;
+  };
+  auto last = std::find_if_not(cells.begin(), cells.end(), is_room);
+  if (last == cells.end()) {
+    return fmt::format("no way that this base can steer leads to x {:.2f} m, y {:.2f} m", X_MGoal.x,
+                       X_MGoal.y);
+  }
+  const Eigen::Vector2d end = last == cells.begin() ? *last : *(last - 1);
+  const auto beyond = std::find_if(last, cells.end(), is_room);
+  const auto solid = std::find_if(last, beyond, [&](const Eigen::Vector2d& p_M) {
+    return CostAt(costmap, p_M) >= navigation::kLethalCost;
+  });
+  if (solid != beyond)
+    return fmt::format("{}; beyond it is {}", ends_at(end), explainer.WhatIsAt(*solid));
+  std::optional<double> least;
+  Eigen::Vector2d narrowest = end;
+  for (auto cell = last; cell != beyond; ++cell) {
+    const auto nearest = explainer.NearestObstacle(*cell);
+    const auto width = nearest ? explainer.WidthAt(*cell, *nearest) : std::nullopt;
+    if (!width || (least && *width >= *least)) continue;
+    least = width;
+    narrowest = *cell;
+  }
+  return too_narrow(narrowest, least.value_or(0.0), explainer.NeededWidth());
+}
+
+}  // namespace hires::skills

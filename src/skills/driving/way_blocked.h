@@ -1,0 +1,45 @@
+// Private to this layer: what is the matter where a base cannot stand or pass, for people.
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "hires/geometry/polygon.h"
+#include "hires/navigation/costmap.h"
+#include "hires/skills/move_base.h"
+
+namespace hires::skills {
+
+/// Where a base cannot pass with its heading along its way, wherever beside it it drives: the free
+/// width across the way, from obstacle to obstacle.
+struct NarrowPlace {
+  geometry::Pose2 X_MW;         ///< in its middle, x along the way
+  double width{0.0};            ///< [m] free
+  double footprint_width{0.0};  ///< [m] across its heading
+};
+
+/// The first pose of a path that lies in a passage, straight on through its narrowest cut, where
+/// the footprint, driving 0.6 m straight on, touches something at all places of the cut and all
+/// headings within 0.52 rad of the passage's; none: it may pass. What lies within the footprint's
+/// reach of both ends does not count: there a base may turn as it needs.
+/// @param footprint  convex, in the base frame, as local control has it.
+std::optional<NarrowPlace> FindTooNarrow(const navigation::Costmap& costmap,
+                                         const geometry::Polygon& footprint,
+                                         const std::vector<geometry::Pose2>& path);
+
+/// The same map with the passage closed.
+navigation::Costmap WithClosed(const navigation::Costmap& costmap, const NarrowPlace& place);
+
+/// What is wrong with a place to stand at: it lies outside of the map, is unmapped, an obstacle
+/// (which, how far), or too narrow (how wide it is, and the base).
+/// @param place  "start", "goal".
+std::string WhyBlocked(const DrivingContext& context, const navigation::Costmap& costmap,
+                       const std::string& place, const geometry::Pose2& X_MB);
+
+/// Where the way from start to goal ends, and by what.
+/// @param narrow  where the footprint is too wide, if that is why.
+std::string WhyNoPath(const DrivingContext& context, const navigation::Costmap& costmap,
+                      const geometry::Pose2& X_MStart, const geometry::Pose2& X_MGoal,
+                      const std::optional<NarrowPlace>& narrow);
+
+}  // namespace hires::skills

@@ -1,0 +1,195 @@
+#include "skills/driving/way_blocked.h"
+
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <memory>
+
+#include "hires/base/rng.h"
+#include "hires/world/occupancy_grid.h"
+#include "support/rounds.h"
+#include "support/scenes.h"
+
+namespace hires::skills::way_blocked_test {
+namespace {
+
+using base::FailureCode;
+using geometry::Pose2;
+using hires::test_support::Block;
+using hires::test_support::Room;
+using hires::test_support::Rounds;
+using hires::test_support::TrayRobot;
+using ::testing::AllOf;
+using ::testing::HasSubstr;
+
+constexpr double kCell = 0.05;  // [m]
+const robot::MotionSet kSlow{0.30, 1.0, 1.4, 2.0};
+
+/// What a drive says at once.
+Status FirstWord(std::shared_ptr<const DrivingContext> context, const Pose2& from,
+                 const Pose2& to) {
+  MoveBase skill(std::move(context), to, kSlow);
+  robot::Observation seen;
+  seen.X_MB = from;
+  robot::Command command;
+  return skill.Update(seen, &command);
+}
+
+/// With an arm held out to the left: one link more, and so much more of footprint.
+robot::Robot WithArm(double length) {
+  robot::Robot robot = TrayRobot();
+  robot::Link arm;
+  arm.name = "arm";
+  arm.joint = robot::Joint();
+  arm.joint->name = "shoulder";
+  arm.joint->parent = 0;
+  arm.collisions = {hires::test_support::Shape("arm", geometry::Box{{0.06, length, 0.06}},
+                                               {0.0, 0.25 + 0.5 * length, 0.5})};
+  robot.model.links.push_back(arm);
+  std::vector<Eigen::Vector2d> corners = robot.profile.footprint;
+  corners.emplace_back(-0.03, 0.25 + length);
+  corners.emplace_back(0.03, 0.25 + length);
+  robot.profile.footprint = geometry::ConvexHull(corners);
+  return robot;
+}
+
+/// Two halves of a wall with a door, across the way from (0, 0) to (6, 0), all turned.
+world::World WithDoor(double width, double thickness, double yaw) {
+  world::World world;
+  const double half = 8.0;
+  const double y = 0.5 * (width + half);
+  for (const double side : {1.0, -1.0}) {
+    world::StaticBody wall = Block(side > 0.0 ? "left_wall" : "right_wall", {thickness, half, 2.0},
+                                   {3.0, side * y, 1.0});
+    wall.X_MB = geometry::Lift({0.0, 0.0, yaw}) * wall.X_MB;
+    world.statics.push_back(wall);
+  }
+  // So long a way round that it is none: the walls reach the map's ends.
+  for (const double side : {1.0, -1.0}) {
+    world::StaticBody end = Block("end", {14.0, 0.2, 2.0}, {3.0, side * (0.5 * width + half), 1.0});
+    end.X_MB = geometry::Lift({0.0, 0.0, yaw}) * end.X_MB;
+    world.statics.push_back(end);
+  }
+  for (const double x : {-4.0, 10.0}) {
+    world::StaticBody end = Block("end", {0.2, width + 2.0 * half, 2.0}, {x, 0.0, 1.0});
+    end.X_MB = geometry::Lift({0.0, 0.0, yaw}) * end.X_MB;
+    world.statics.push_back(end);
+  }
+  return world;
+}
+
+TEST(WayBlockedTest, AFootprintWiderThanTheOnlyDoorIsNoPathAtOnce) {
+  base::Rng rng(11);
+  for (int i = 0; i < Rounds(48); ++i) {
+    const double arm = rng.Uniform(0.4, 1.0), yaw = rng.Uniform(-3.0, 3.0);
+    const double wide = 0.5 + arm + 2.0 * 0.015;
+    const double door = rng.Uniform(0.75, wide - 3.0 * kCell);
+    const auto context = std::make_shared<const DrivingContext>(
+        MakeDrivingContext(WithDoor(door, rng.Uniform(0.1, 0.4), yaw), WithArm(arm), {}));
+    const Pose2 X_MT{0.0, 0.0, yaw};
+    const Status status = FirstWord(context, X_MT, X_MT * Pose2{6.0, 0.0, 0.0});
+    ASSERT_EQ(status.failure.code, FailureCode::kNoPath)
+        << "door " << door << " robot " << wide << " yaw " << yaw;
+    EXPECT_THAT(status.failure.detail,
+                AllOf(HasSubstr("the way ends at"), HasSubstr(fmt::format("{:.2f} m wide", wide)),
+                      HasSubstr("'arm' reaches farthest"), HasSubstr("_wall'")));
+  }
+}
+
+TEST(WayBlockedTest, ADoorThatIsWideEnoughIsPlannedThrough) {
+  base::Rng rng(12);
+  for (int i = 0; i < Rounds(48); ++i) {
+    const double arm = rng.Uniform(0.1, 0.8), yaw = rng.Uniform(-3.0, 3.0);
+    const double door = 0.5 + arm + 0.03 + rng.Uniform(0.2, 1.0);
+    const auto context = std::make_shared<const DrivingContext>(
+        MakeDrivingContext(WithDoor(door, rng.Uniform(0.1, 0.4), yaw), WithArm(arm), {}));
+    const Pose2 X_MT{0.0, 0.0, yaw};
+    const Status status = FirstWord(context, X_MT, X_MT * Pose2{6.0, 0.0, 0.0});
+    EXPECT_EQ(ToString(status.failure), "") << "door " << door << " arm " << arm << " yaw " << yaw;
+  }
+}
+
+TEST(WayBlockedTest, WhatStandsAtAGoalIsNamedWithItsLine) {
+  base::Rng rng(13);
+  for (int i = 0; i < Rounds(40); ++i) {
+    world::World room = Room();
+    const Eigen::Vector3d p_M(rng.Uniform(2.0, 5.0), rng.Uniform(1.0, 3.0), 0.4);
+    room.statics.push_back(Block("crate", {rng.Uniform(0.3, 0.8), 0.5, 0.8}, p_M));
+    room.sources["crate"] = "room.world:7";
+    const auto context = std::make_shared<const DrivingContext>(
+        MakeDrivingContext(room, TrayRobot(), MoveBaseParams{}));
+    const Pose2 at{p_M.x(), p_M.y(), 0.0};
+    for (const double beside : {0.0, 0.5}) {
+      const Pose2 goal{at.x, at.y + beside - (beside > 0.0 ? 0.1 : 0.0), 0.0};
+      const Status status = FirstWord(context, {1.0, 2.0, 0.0}, goal);
+      ASSERT_EQ(status.failure.code, FailureCode::kGoalBlocked);
+      EXPECT_THAT(status.failure.detail,
+                  AllOf(HasSubstr("the goal at x"), HasSubstr("'crate' (room.world:7)")));
+    }
+    const Status start = FirstWord(context, at, {1.0, 2.0, 0.0});
+    EXPECT_EQ(start.failure.code, FailureCode::kStartBlocked);
+    EXPECT_THAT(start.failure.detail, AllOf(HasSubstr("the start at x"), HasSubstr("'crate'")));
+  }
+}
+
+/// Free but for a border, x 0 .. 6, y 0 .. 4.
+world::OccupancyGrid Plain() {
+  world::OccupancyGrid map;
+  map.width = 120;
+  map.height = 80;
+  map.cells.assign(120 * 80, world::Cell::kFree);
+  return map;
+}
+
+void Fill(double x_from, double x_to, world::Cell cell, world::OccupancyGrid* map) {
+  for (int row = 0; row < map->height; ++row) {
+    for (int column = 0; column < map->width; ++column) {
+      const double x = map->CentreOf(column, row).x();
+      if (x > x_from && x < x_to) map->cells[row * map->width + column] = cell;
+    }
+  }
+}
+
+TEST(WayBlockedTest, UnmappedGroundAndWallsOfAMapAreToldApart) {
+  base::Rng rng(14);
+  for (int i = 0; i < Rounds(40); ++i) {
+    const double from = rng.Uniform(2.5, 3.0);
+    const Pose2 west{1.0, 2.0, 0.0}, east{5.0, rng.Uniform(1.0, 3.0), 0.0};
+    world::OccupancyGrid parted = Plain(), unmapped = Plain();
+    Fill(from, from + 0.1, world::Cell::kOccupied, &parted);
+    Fill(from, 6.0, world::Cell::kUnknown, &unmapped);
+    const auto context_of = [](const world::OccupancyGrid& map) {
+      return std::make_shared<const DrivingContext>(
+          MakeDrivingContext(map, TrayRobot(), MoveBaseParams{}));
+    };
+    const Status no_way = FirstWord(context_of(parted), west, east);
+    EXPECT_EQ(no_way.failure.code, FailureCode::kNoPath);
+    EXPECT_THAT(no_way.failure.detail,
+                AllOf(HasSubstr("the way ends at x 2."), HasSubstr("a wall of the map")));
+    const Status goal = FirstWord(context_of(unmapped), west, east);
+    EXPECT_EQ(goal.failure.code, FailureCode::kGoalBlocked);
+    EXPECT_THAT(goal.failure.detail, HasSubstr("is unmapped (unknown)"));
+    const Status start = FirstWord(context_of(unmapped), east, west);
+    EXPECT_EQ(start.failure.code, FailureCode::kStartBlocked);
+    EXPECT_THAT(start.failure.detail, HasSubstr("is unmapped (unknown)"));
+  }
+}
+
+TEST(WayBlockedTest, TheWayRoundATooNarrowDoorIsTaken) {
+  world::World world = WithDoor(0.9, 0.2, 0.0);
+  world.statics.erase(world.statics.begin() + 2, world.statics.begin() + 4);  // so there is a way
+  const auto context = std::make_shared<const DrivingContext>(
+      MakeDrivingContext(world, WithArm(0.8), MoveBaseParams{}));
+  MoveBase skill(context, {6.0, 0.0, 0.0}, kSlow);
+  robot::Observation seen;
+  robot::Command command;
+  EXPECT_EQ(ToString(skill.Update(seen, &command).failure), "");
+  double farthest = 0.0;
+  for (const Pose2& pose : *skill.drive_view()->path)
+    farthest = std::max(farthest, std::abs(pose.y));
+  EXPECT_GT(farthest, 8.0);
+}
+
+}  // namespace
+}  // namespace hires::skills::way_blocked_test
