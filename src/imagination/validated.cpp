@@ -174,6 +174,13 @@ void AddCaveats(const RolloutSetup& setup, const std::vector<base::ActionCall>& 
   for (std::string& caveat : CaveatsOf(setup, actions, validated)) {
     report->caveats.push_back(std::move(caveat));
   }
+  const bool drives = std::any_of(actions.begin(), actions.end(), [&](const ActionCall& action) {
+    return skills::SpecOf(*setup.skills, action).driving != actions::Driving::kNone;
+  });
+  if (drives) {
+    for (const std::string& text : setup.scene->robot.assumed)
+      report->caveats.push_back("assumed of the robot, " + text);
+  }
   const std::string certain = CertainText(*setup.uncertainty);
   if (!certain.empty()) report->caveats.push_back(certain);
 }

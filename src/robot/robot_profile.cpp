@@ -11,6 +11,8 @@
 #include "hires/base/param_reader.h"
 #include "hires/base/spelling.h"
 #include "hires/base/text.h"
+#include "robot/assumptions.h"
+#include "robot/base_height.h"
 #include "robot/drive_guess.h"
 #include "robot/extra_sensors_reader.h"
 #include "robot/upper_body_reader.h"
@@ -22,7 +24,7 @@ using base::Between;
 using base::ParamReader;
 using geometry::Pose3;
 
-constexpr double kFootprintTop = 2.0;  // [m] above the base frame: what is higher passes over all
+constexpr double kTopOfFootprint = 2.0;  // [m] above the base frame: higher, it passes over all
 
 MotionSet ReadMotionSet(ParamReader in) {
   MotionSet set;
@@ -390,7 +392,7 @@ std::vector<Eigen::Vector2d> CornersOf(const RobotModel& model, const std::strin
     if (!counts(static_cast<int>(i))) continue;
     for (const geometry::Collision& collision : model.links[i].collisions) {
       const auto outline = geometry::OutlineInBand(
-          collision.shape, X_BR * (X_R[i] * collision.X_BS), 0.0, kFootprintTop);
+          collision.shape, X_BR * (X_R[i] * collision.X_BS), 0.0, kTopOfFootprint);
       if (outline) points.insert(points.end(), outline->begin(), outline->end());
     }
   }
@@ -427,7 +429,7 @@ geometry::Polygon OutlineOf(const RobotModel& model, const std::string& base_lin
       fmt::format("robot '{}': no collision shape lies 0 to {} m above link '{}', so there is no "
                   "footprint; add "
                   "<collision> shapes, or give 'footprint' in a profile",
-                  model.name, kFootprintTop, base_link));
+                  model.name, kTopOfFootprint, base_link));
 }
 
 geometry::Polygon BaseOutlineOf(const Robot& robot) {
@@ -459,9 +461,12 @@ Robot LoadRobot(const std::string& profile_path) {
   robot.model = LoadRobotModel(urdf);
   FillFromModel(in, &robot);
   CheckProfile(in, robot.profile, robot.model);
+  StandOnFloor(&robot);
   if (robot.profile.footprint.empty()) {
     robot.profile.footprint = OutlineOf(robot.model, robot.profile.base_link, robot.profile.joints);
   }
+  robot.assumed = AssumptionsOf(
+      robot, [&in](const std::string& key) { return in.Has(key); }, urdf);
   robot.profile.hash = HashOf(robot.profile);
   return robot;
 }
@@ -473,9 +478,12 @@ Robot LoadRobotFromUrdf(const std::string& urdf_path) {
   profile.urdf = std::filesystem::path(urdf_path).filename().string();
   profile.base_link = robot.model.links.front().name;
   GuessTray(robot.model, &profile);
-  profile.footprint = OutlineOf(robot.model, profile.base_link, {});
   GuessAndSayDrive(robot.model, &profile.base_controller);
   SayAssumedMotion(robot.model);
+  StandOnFloor(&robot);
+  profile.footprint = OutlineOf(robot.model, profile.base_link, {});
+  robot.assumed = AssumptionsOf(
+      robot, [](const std::string& /*key*/) { return false; }, urdf_path);
   profile.hash = HashOf(profile);
   return robot;
 }

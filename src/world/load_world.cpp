@@ -14,6 +14,7 @@
 #include "hires/base/text.h"
 #include "hires/world/world.h"
 #include "world/content_hash.h"
+#include "world/floor_level.h"
 #include "world/load_world_in_parts.h"
 #include "world/plain_object.h"
 #include "world/sdf_file.h"
@@ -256,7 +257,7 @@ World LoadWorldInParts(const std::string& sdf_path, const std::vector<std::strin
   WorldBuilder builder(&finder);
   ReadSdfWorld(sdf_path, finder, models_per_part,
                [&](const SdfWorldPart& part) { builder.Add(part, sdf_path); });
-  return builder.Finish(sdf_path);
+  return OnItsFloor(builder.Finish(sdf_path));
 }
 
 ObjectModel LoadObjectModel(const std::string& path) {

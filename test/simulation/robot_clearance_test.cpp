@@ -304,5 +304,20 @@ TEST(RobotClearanceTest, AContactNamesTheShapeItsPlaceAndItsLine) {
   EXPECT_GT(num_contacts, 10);
 }
 
+TEST(RobotClearanceTest, WhatARobotStandsOnIsNoObstacleAndAStepIs) {
+  base::Rng rng(22);
+  for (int i = 0; i < test_support::Rounds(200); ++i) {
+    const double sunk = rng.Uniform(0.0, 0.005), height = rng.Uniform(-0.01, 0.02);
+    const std::vector<geometry::Collision> wheels{
+        Shape("wheel", geometry::Cylinder{0.1, 0.2}, {0.0, 0.0, 0.1 - sunk})};
+    world::StaticBody slab = Block("slab", {4.0, 4.0, 0.2}, {0.0, 0.0, height - 0.1});
+    if (i % 2 == 0) slab.collisions.front().shape = test_support::BoxMesh({4.0, 4.0, 0.2});
+    const bool is_step = height > 0.005 - sunk;
+    const RobotClearance clearance(wheels, WorldOf({slab}));
+    EXPECT_EQ(clearance.FindContact({rng.Uniform(-1.0, 1.0), 0.0, 0.0}).has_value(), is_step)
+        << "sunk " << sunk << " height " << height;
+  }
+}
+
 }  // namespace
 }  // namespace hires::simulation::robot_clearance_test

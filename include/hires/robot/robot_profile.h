@@ -75,6 +75,12 @@ struct RobotProfile {
 struct Robot {
   RobotModel model;
   RobotProfile profile;
+  /// [m] of the frame that was named base_link, or is the root, over the floor, where the robot's
+  /// shapes reach below it: base_link is then a link base_footprint below it, added where there was
+  /// none. 0: base_link itself is on the floor.
+  double base_height{0.0};
+  /// What no file says and its drives rest on, one sentence each with what to write; for people.
+  std::vector<std::string> assumed{};
   std::uint64_t hash() const;  ///< of both
 };
 
@@ -105,8 +111,9 @@ Robot LoadRobot(const std::string& profile_path);
 /// A robot from a bare URDF, with what can be derived: base_link is the root; the tray is the link
 /// whose name contains "tray" (case ignored) and has a collision shape, the largest one seen from
 /// above where several do, and objects stand on the middle of its top; without such a link the
-/// robot carries nothing. The footprint is the convex hull of the collision shapes seen from above
-/// (0 .. 2 m over the root), joints at rest, padded as RobotProfile's default.
+/// robot carries nothing. Where shapes reach below the root, the lowest one is on the floor (see
+/// Robot::base_height). The footprint is the convex hull of the collision shapes seen from above,
+/// up to 2 m over the floor, joints at rest, padded as RobotProfile's default.
 /// Motion sets and base controller are those of RobotProfile's defaults (PR2); how it drives, and
 /// how sharply a car-like one turns, is guessed from its wheels, and logged.
 /// @throws base::ConfigError as LoadRobotModel, and if there is no collision shape in that band.

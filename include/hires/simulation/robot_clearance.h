@@ -36,7 +36,9 @@ class TouchShape;
 /// shape that is no mesh counts as the upright prism over its outline between its lowest and its
 /// highest point: exact for upright boxes and cylinders, never too small for anything else. A mesh,
 /// the robot's own or an obstacle's, is where its triangles are: what a wall goes round is free,
-/// and so is what is below a table.
+/// and so is what is below a table. What reaches no higher than 5 mm over the robot's lowest shape,
+/// or over z = 0 where that is lower, is the floor that bears it, and touches nothing; of a mesh
+/// the part that is so low.
 class RobotClearance {
  public:
   /// @param robot_B  collision shapes in the base frame.

@@ -60,6 +60,9 @@ struct World {
   std::map<std::string, Eigen::AlignedBox2d> extents;  ///< as ExtentOf, of areas that say one
   std::map<std::string, std::shared_ptr<const ObjectModel>> models;  ///< by name
   WorldState initial;
+  /// [m] by which the heights of the file were lowered, as robots stand higher there than at z = 0
+  /// (OnItsFloor). For people: no part of the hash.
+  double lowered_by{0.0};
   /// Where static bodies and their shapes stand, "hall.world:12", by their names (NameOf); empty
   /// where no file of a world has them. For people: no part of the hash.
   std::map<std::string, std::string> sources;

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "simulation/clearance/touch_shape.h"
+#include "world/floor_level.h"
 
 namespace hires::simulation {
 namespace {
@@ -54,6 +55,21 @@ std::optional<Eigen::Vector2d> MiddleOfBoth(const geometry::Polygon& a,
   Eigen::Vector2d middle = Eigen::Vector2d::Zero();
   for (const Eigen::Vector2d& p : shared) middle += p / static_cast<double>(shared.size());
   return middle;
+}
+
+/// What of a shape is higher than what a robot stands on; nothing where all of it is floor.
+std::optional<geometry::Collision> AboveFloor(geometry::Collision shape,
+                                              const geometry::Pose3& X_MB, double floor_top) {
+  using Mesh = std::shared_ptr<const geometry::TriangleMesh>;
+  const geometry::Pose3 X_MS = X_MB * shape.X_BS;
+  if (const auto* mesh = std::get_if<Mesh>(&shape.shape)) {
+    const Mesh left = world::WithoutFloor(*mesh, X_MS, floor_top);
+    if (left == nullptr) return std::nullopt;
+    shape.shape = left;
+    return shape;
+  }
+  if (geometry::BoundsOf(shape.shape, X_MS).upper.z() <= floor_top) return std::nullopt;
+  return shape;
 }
 
 std::string SourceOf(const std::string& name, const world::World& world) {
@@ -122,10 +138,15 @@ RobotClearance::RobotClearance(const std::vector<geometry::Collision>& robot_B,
       robot_.push_back(*std::move(prism));
     }
   }
+  double lowest = 0.0;
+  for (const Prism& part : robot_) lowest = std::min(lowest, part.z_min);
+  const double floor_top = lowest + world::kFloorStep;
   for (const world::StaticBody& body : world.statics) {
-    for (const geometry::Collision& shape : body.collisions) {
-      const std::string name = world::NameOf(body, shape);
-      if (auto prism = MakePrism(name, SourceOf(name, world), shape, body.X_MB)) {
+    for (const geometry::Collision& whole : body.collisions) {
+      const std::string name = world::NameOf(body, whole);
+      const auto shape = AboveFloor(whole, body.X_MB, floor_top);
+      if (!shape) continue;
+      if (auto prism = MakePrism(name, SourceOf(name, world), *shape, body.X_MB)) {
         obstacles_.push_back(*std::move(prism));
       }
     }

@@ -53,9 +53,11 @@ std::optional<navigation::CarFollower> MakeFollower(const DrivingContext& contex
 
 double RobotHeight(const robot::Robot& robot) {
   geometry::Aabb bounds;
+  const auto X_RL = robot::ForwardKinematics(robot.model, robot.profile.joints);
+  const geometry::Pose3 X_BR = X_RL[*robot.model.FindLink(robot.profile.base_link)].Inverse();
   for (const geometry::Collision& shape :
        robot::FrozenCollisions(robot.model, robot.profile.joints)) {
-    bounds.Include(geometry::BoundsOf(shape.shape, shape.X_BS));
+    bounds.Include(geometry::BoundsOf(shape.shape, X_BR * shape.X_BS));
   }
   return bounds.upper.z();
 }

@@ -1,0 +1,198 @@
+#include "robot/assumptions.h"
+
+#include <fmt/format.h>
+#include <tinyxml2.h>
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+#include "hires/base/text.h"
+#include "robot/base_height.h"
+
+namespace hires::robot {
+namespace {
+
+using geometry::Pose3;
+using IsGiven = std::function<bool(const std::string&)>;
+
+constexpr double kFootprintTop = 2.0;  // [m] above the floor: what is higher passes over all
+constexpr std::size_t kMostNames = 6;
+
+std::string Few(const std::vector<std::string>& names) {
+  if (names.size() <= kMostNames) return base::Join(names, ", ");
+  const std::vector<std::string> first(names.begin(), names.begin() + kMostNames);
+  return fmt::format("{} and {} more", base::Join(first, ", "), names.size() - kMostNames);
+}
+
+/// Boxes around the shapes of each link, in the base frame.
+std::vector<geometry::Aabb> BoundsByLink(const Robot& robot) {
+  const std::vector<Pose3> X_R = ForwardKinematics(robot.model, robot.profile.joints);
+  const Pose3 X_BR = X_R[*robot.model.FindLink(robot.profile.base_link)].Inverse();
+  std::vector<geometry::Aabb> bounds(robot.model.links.size());
+  for (std::size_t i = 0; i < bounds.size(); ++i) {
+    for (const geometry::Collision& shape : robot.model.links[i].collisions)
+      bounds[i].Include(geometry::BoundsOf(shape.shape, X_BR * (X_R[i] * shape.X_BS)));
+  }
+  return bounds;
+}
+
+std::string FootprintText(const Robot& robot) {
+  geometry::Aabb hull;
+  for (const Eigen::Vector2d& p : robot.profile.footprint) hull.Include({p.x(), p.y(), 0.0});
+  const Eigen::Vector3d size = hull.upper - hull.lower;
+  const std::vector<geometry::Aabb> bounds = BoundsByLink(robot);
+  double widest = 0.0;
+  std::string link;
+  for (std::size_t i = 0; i < bounds.size(); ++i) {
+    if (bounds[i].lower.z() > kFootprintTop) continue;
+    const double side = std::max(std::abs(bounds[i].lower.y()), std::abs(bounds[i].upper.y()));
+    if (robot.model.links[i].collisions.empty() || side <= widest + 1e-6) continue;
+    widest = side;
+    link = robot.model.links[i].name;
+  }
+  return fmt::format(
+      "footprint: the outline of all shapes, {:.2f} m long and {:.2f} m wide, and '{}' reaches "
+      "farthest to a side; if that is wrong, write `footprint: [{{x: .., y: ..}}, ...]` in a "
+      "profile",
+      size.x(), size.y(), link);
+}
+
+/// What lies above all that a footprint is made of, and is held against nothing there.
+std::vector<std::string> LeftOut(const Robot& robot) {
+  std::vector<std::string> names;
+  const std::vector<geometry::Aabb> bounds = BoundsByLink(robot);
+  for (std::size_t i = 0; i < bounds.size(); ++i) {
+    if (robot.model.links[i].collisions.empty()) continue;
+    if (bounds[i].lower.z() > kFootprintTop) names.push_back(robot.model.links[i].name);
+  }
+  return names;
+}
+
+/// Whether what a link carries sticks out of all else, seen from above.
+bool SticksOut(const Robot& robot, int above) {
+  const std::vector<geometry::Aabb> bounds = BoundsByLink(robot);
+  std::vector<Eigen::Vector2d> carried, others;
+  for (int i = 0; i < static_cast<int>(bounds.size()); ++i) {
+    if (robot.model.links[i].collisions.empty()) continue;
+    auto& corners = IsBelow(robot.model, i, above) ? carried : others;
+    for (const double x : {bounds[i].lower.x(), bounds[i].upper.x()}) {
+      for (const double y : {bounds[i].lower.y(), bounds[i].upper.y()}) corners.emplace_back(x, y);
+    }
+  }
+  if (others.empty()) return !carried.empty();
+  const geometry::Polygon hull = geometry::ConvexHull(std::move(others));
+  return std::any_of(carried.begin(), carried.end(), [&](const Eigen::Vector2d& corner) {
+    return !geometry::Contains(hull, corner);
+  });
+}
+
+/// Movable joints but wheels, that no file puts anywhere and that the footprint depends on.
+std::vector<std::string> JointsAtZero(const Robot& robot) {
+  std::vector<std::string> names;
+  const RobotModel& model = robot.model;
+  for (std::size_t i = 0; i < model.links.size(); ++i) {
+    const auto& joint = model.links[i].joint;
+    const bool moves =
+        joint && joint->mimics.empty() &&
+        (joint->type == JointType::kRevolute || joint->type == JointType::kPrismatic);
+    if (!moves || robot.profile.joints.count(joint->name) > 0) continue;
+    if (SticksOut(robot, static_cast<int>(i))) names.push_back(joint->name);
+  }
+  return names;
+}
+
+bool IsLaserType(const std::string& type) {
+  return type == "ray" || type == "gpu_ray" || type == "lidar" || type == "gpu_lidar";
+}
+
+std::string LaserText(const RobotModel& model, const std::string& urdf_xml) {
+  const std::vector<std::string> links = LaserLinks(model, urdf_xml);
+  if (links.empty())
+    return "laser_link: none is named, so it drives by the map alone, and sees nothing on its way";
+  return fmt::format(
+      "laser_link: none is named, so it drives by the map alone; by sensor or name a laser is at "
+      "{}: write `laser_link: {}` in a profile",
+      Few(links), links.front());
+}
+
+void AddMotion(const Robot& robot, const IsGiven& is_given, std::vector<std::string>* texts) {
+  std::vector<std::string> missing;
+  for (const char* key : {"motion_sets", "base_controller"}) {
+    if (!is_given(key)) missing.emplace_back(key);
+  }
+  if (missing.empty()) return;
+  texts->push_back(fmt::format(
+      "{}: what the profile does not say is as a PR2 has it (default motion set '{}'); write {} in "
+      "a profile",
+      base::Join(missing, ", "), robot.profile.default_motion_set,
+      missing.size() == 1 ? "it" : "them"));
+}
+
+}  // namespace
+
+std::vector<std::string> LaserLinks(const RobotModel& model, const std::string& urdf_xml) {
+  std::set<std::string> by_sensor;
+  tinyxml2::XMLDocument document;
+  if (document.Parse(urdf_xml.c_str(), urdf_xml.size()) == tinyxml2::XML_SUCCESS &&
+      document.RootElement() != nullptr) {
+    const tinyxml2::XMLElement* root = document.RootElement();
+    for (const auto* gazebo = root->FirstChildElement("gazebo"); gazebo != nullptr;
+         gazebo = gazebo->NextSiblingElement("gazebo")) {
+      const char* link = gazebo->Attribute("reference");
+      for (const auto* sensor = gazebo->FirstChildElement("sensor");
+           link != nullptr && sensor != nullptr; sensor = sensor->NextSiblingElement("sensor")) {
+        const char* type = sensor->Attribute("type");
+        if (type != nullptr && IsLaserType(type)) by_sensor.insert(link);
+      }
+    }
+  }
+  std::vector<std::string> links;
+  for (const Link& link : model.links) {
+    const std::string lower = base::ToLower(link.name);
+    const auto has = [&](const char* word) { return lower.find(word) != std::string::npos; };
+    if (by_sensor.count(link.name) > 0 || has("laser") || has("lidar") || has("base_scan"))
+      links.push_back(link.name);
+  }
+  // Of links with the same claim the one with a sensor comes first.
+  std::stable_partition(links.begin(), links.end(),
+                        [&](const std::string& name) { return by_sensor.count(name) > 0; });
+  return links;
+}
+
+std::vector<std::string> AssumptionsOf(const Robot& robot, const IsGiven& is_given,
+                                       const std::string& urdf_path) {
+  std::vector<std::string> texts;
+  if (!is_given("footprint")) texts.push_back(FootprintText(robot));
+  const std::vector<std::string> left_out = LeftOut(robot);
+  if (!left_out.empty()) {
+    texts.push_back(
+        fmt::format("left out of the footprint, as they lie more than {:g} m over the "
+                    "floor: {}",
+                    kFootprintTop, Few(left_out)));
+  }
+  const std::vector<std::string> at_zero = JointsAtZero(robot);
+  if (!at_zero.empty()) {
+    texts.push_back(fmt::format(
+        "joints: at 0, or at the limit next to it, stand {}; write `joints: {{{}: ..}}` "
+        "in a profile",
+        Few(at_zero), at_zero.front()));
+  }
+  if (robot.base_height > 0.0) {
+    texts.push_back(fmt::format(
+        "base_link: its shapes reach {:.3f} m below it, so it is so high over the floor; "
+        "a link base_footprint in the URDF would say it",
+        robot.base_height));
+  } else if (LowestShape(robot) > kFloorSlack && !is_given("base_link")) {
+    texts.push_back(fmt::format(
+        "base_link: '{}' is taken to lie on the floor, its lowest shape {:.3f} m over it",
+        robot.profile.base_link, LowestShape(robot)));
+  }
+  if (robot.profile.laser_link.empty()) {
+    texts.push_back(LaserText(robot.model, base::ReadTextFile(urdf_path)));
+  }
+  AddMotion(robot, is_given, &texts);
+  return texts;
+}
+
+}  // namespace hires::robot

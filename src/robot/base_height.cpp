@@ -1,0 +1,65 @@
+#include "robot/base_height.h"
+
+#include <cmath>
+#include <utility>
+
+#include "hires/geometry/pose.h"
+
+namespace hires::robot {
+namespace {
+
+using geometry::Pose3;
+
+constexpr char kOnFloor[] = "base_footprint";  // REP-120
+
+/// A root that carries the whole robot, at a pose in the frame of the root of before.
+void PutRootBelow(const Pose3& X_RF, const std::string& name, RobotModel* model) {
+  for (Link& link : model->links)
+    if (link.joint) ++link.joint->parent;
+  Joint joint;
+  joint.name = name + "_joint";
+  joint.parent = 0;
+  joint.X_PJ = X_RF.Inverse();
+  model->links.front().joint = std::move(joint);
+  Link root;
+  root.name = name;
+  model->links.insert(model->links.begin(), std::move(root));
+}
+
+}  // namespace
+
+double LowestShape(const Robot& robot) {
+  const std::vector<Pose3> X_R = ForwardKinematics(robot.model, robot.profile.joints);
+  const Pose3 X_BR = X_R[*robot.model.FindLink(robot.profile.base_link)].Inverse();
+  geometry::Aabb bounds;
+  bool has_any = false;
+  for (std::size_t i = 0; i < robot.model.links.size(); ++i) {
+    for (const geometry::Collision& shape : robot.model.links[i].collisions) {
+      bounds.Include(geometry::BoundsOf(shape.shape, X_BR * (X_R[i] * shape.X_BS)));
+      has_any = true;
+    }
+  }
+  return has_any ? bounds.lower.z() : 0.0;
+}
+
+void StandOnFloor(Robot* robot) {
+  const double lowest = LowestShape(*robot);
+  if (lowest >= -kFloorSlack) return;
+  const std::vector<Pose3> X_R = ForwardKinematics(robot->model, robot->profile.joints);
+  const Pose3& X_RB = X_R[*robot->model.FindLink(robot->profile.base_link)];
+  robot->base_height = -lowest;
+  std::string name = kOnFloor;
+  if (const auto known = robot->model.FindLink(name)) {
+    const double z_BK = (X_RB.Inverse() * X_R[*known]).translation.z();
+    if (std::abs(z_BK - lowest) <= kFloorSlack) {
+      robot->profile.base_link = name;
+      return;
+    }
+    name = robot->profile.base_link + "_on_floor";
+  }
+  const Pose3 X_BF{{0.0, 0.0, lowest}, Eigen::Quaterniond::Identity()};
+  PutRootBelow(X_RB * X_BF, name, &robot->model);
+  robot->profile.base_link = name;
+}
+
+}  // namespace hires::robot
