@@ -5,5 +5,6 @@
 int main(int argc, char** argv) {
   hires::cli::Backends backends;
   backends.package_folder = hires::cli::LocalPackageFolder(HIRES_SOURCE_DIR);
+  hires::cli::NamePackageFolder(backends.package_folder);
   return hires::cli::RunCommandLine({argv, argv + argc}, backends);
 }

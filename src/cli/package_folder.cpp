@@ -18,4 +18,10 @@ std::string LocalPackageFolder(const std::string& source_folder) {
   return source_folder;
 }
 
+void NamePackageFolder(const std::string& folder) {
+  const char* known = std::getenv("ROS_PACKAGE_PATH");
+  const std::string path = known == nullptr || *known == '\0' ? folder : known + (":" + folder);
+  setenv("ROS_PACKAGE_PATH", path.c_str(), 1);
+}
+
 }  // namespace hires::cli

@@ -2,9 +2,12 @@
 
 #include <gmock/gmock.h>
 
+#include <cstdlib>
+#include <fstream>
 #include <nlohmann/json.hpp>
 
 #include "cli/command_run.h"
+#include "cli/package_folder.h"
 #include "hires/base/text.h"
 #include "support/temporary_folder.h"
 
@@ -79,6 +82,22 @@ TEST(LocalVerbsTest, ListsNoTasks) {
   EXPECT_THAT(ended.err, HasSubstr("'hires list tasks' does"));
   EXPECT_THAT(RunLocal({"list"}).err, Not(HasSubstr("'tasks'")));
   EXPECT_EQ(RunLocal({"list", "areas"}).code, 0);
+}
+
+TEST(LocalVerbsTest, StandInsForGazebosModelsAreFoundWithoutRos) {
+  const char* before = std::getenv("ROS_PACKAGE_PATH");
+  const std::string kept = before != nullptr ? before : "";
+  const TemporaryFolder folder;
+  const std::string world = (folder.path() / "plane.world").string();
+  std::ofstream(world) << "<sdf version='1.6'><world name='w'><include><uri>model://ground_plane"
+                          "</uri></include></world></sdf>";
+  setenv("ROS_PACKAGE_PATH", "/somewhere", 1);
+  EXPECT_EQ(RunLocal({"list", "areas", "--world", world}).code, 1);
+  NamePackageFolder(HIRES_SOURCE_DIR);
+  EXPECT_STREQ(std::getenv("ROS_PACKAGE_PATH"), "/somewhere:" HIRES_SOURCE_DIR);
+  const Ended ended = RunLocal({"list", "areas", "--world", world});
+  EXPECT_EQ(ended.code, 0) << ended.err;
+  setenv("ROS_PACKAGE_PATH", kept.c_str(), 1);
 }
 
 TEST(LocalVerbsTest, AsksNobody) {
