@@ -10,7 +10,7 @@ import unittest
 ROOT = os.path.realpath(os.path.join(os.path.dirname(__file__), '../..'))
 PROGRAM = sys.argv.pop()
 PAIR = 'pr2:race_peppermill'
-FEW = ('--pairs', PAIR, '--max-fall', '0.2', '--rollouts', '20', '--seed', '7')
+FEW = ('--pairs', PAIR, '--max-fall', '0.2', '--rollouts', '60', '--seed', '7')
 
 
 def check(folder, *words):
@@ -39,13 +39,13 @@ class CheckLimitsTest(unittest.TestCase):
 
     def test_a_limit_at_which_too_many_fail_is_named(self):
         answer = self.answer()
-        answer['limits'][0]['check_falls'] = 15  # of 20, where 20 % may
+        answer['limits'][0]['check_falls'] = 45  # of 60, where 20 % may
         with tempfile.TemporaryDirectory() as folder:
             with open(f'{folder}/pr2_race_peppermill.json', 'w', encoding='utf-8') as file:
                 json.dump(answer, file)
             refused = check(folder, *FEW)
         self.assertEqual(refused.returncode, 1)
-        self.assertIn('race_peppermill: speed: 15 of 20 fail, at most 20 % may', refused.stderr)
+        self.assertIn('race_peppermill: speed: 45 of 60 fail, at most 20 % may', refused.stderr)
 
 
 if __name__ == '__main__':

@@ -104,7 +104,7 @@ TEST(LaidOverTest, CorrelationsGoWithTheStartPosesThatTheyAreOf) {
 
 TEST(CertainTextTest, SaysTheShorterHalf) {
   EXPECT_THAT(CertainText(Parse(kFriction)),
-              HasSubstr("34 of 35 quantities, all but object_friction"));
+              HasSubstr("35 of 36 quantities, all but object_friction"));
   EXPECT_THAT(CertainText(NoUncertainty()), HasSubstr("nothing is uncertain"));
   Uncertainty nearly = LoadUncertainty(kShipped);
   nearly.quantities.erase("start_x");

@@ -296,8 +296,8 @@ TEST(RobotClearanceTest, AContactNamesTheShapeItsPlaceAndItsLine) {
     };
     EXPECT_TRUE(is_near(geometry::Transformed(X_MB, OutlineOf(BoxRobot().front(), {}))));
     for (const geometry::Collision& part : world.statics.front().collisions) {
-      if (part.name == shape)
-        EXPECT_TRUE(is_near(OutlineOf(part, world.statics.front().X_MB))) << contact->obstacle;
+      if (part.name != shape) continue;
+      EXPECT_TRUE(is_near(OutlineOf(part, world.statics.front().X_MB))) << contact->obstacle;
     }
     EXPECT_EQ(ToString(*contact).rfind("hull touches house::" + shape + " at x ", 0), 0u);
   }

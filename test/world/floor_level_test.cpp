@@ -41,7 +41,9 @@ TEST(FloorLevelTest, WhereAllAreasStandIsTheFloor) {
     EXPECT_NEAR(world.frames.at("a").translation.z(), 0.0, kFloorStep + 1e-12) << top;
     EXPECT_NEAR(world.frames.at("on_table").translation.z(), 0.725, kFloorStep + 1e-12);
     EXPECT_EQ(world.floor_friction, 0.6);
-    if (std::abs(top) > kFloorStep) EXPECT_NEAR(world.lowered_by, top, 1e-9);
+    if (std::abs(top) > kFloorStep) {
+      EXPECT_NEAR(world.lowered_by, top, 1e-9);
+    }
   }
 }
 
