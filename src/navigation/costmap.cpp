@@ -245,26 +245,24 @@ Costmap Costmap::WithObstaclesAt(const std::vector<Eigen::Vector2d>& points_M) c
   return extended;
 }
 
-Costmap Costmap::WithRoomFor(const geometry::Polygon& outline_M) const {
-  Costmap roomier = *this;
+Costmap Costmap::Eased(const geometry::Polygon& outline_M, std::uint8_t most) const {
+  Costmap eased = *this;
   ForEachSpan(outline_M, *this, [&](int row, int first, int last) {
-    std::uint8_t* costs = &roomier.costs_[static_cast<std::size_t>(row) * width_];
+    std::uint8_t* costs = &eased.costs_[static_cast<std::size_t>(row) * width_];
     for (int column = std::max(first, 0); column <= std::min(last, width_ - 1); ++column) {
-      costs[column] = std::min<std::uint8_t>(costs[column], kInscribedCost - 1);
+      if (costs[column] <= most)
+        costs[column] = std::min<std::uint8_t>(costs[column], kInscribedCost - 1);
     }
   });
-  return roomier;
+  return eased;
+}
+
+Costmap Costmap::WithRoomFor(const geometry::Polygon& outline_M) const {
+  return Eased(outline_M, std::numeric_limits<std::uint8_t>::max());
 }
 
 Costmap Costmap::WithAccessTo(const geometry::Polygon& outline_M) const {
-  Costmap open = *this;
-  ForEachSpan(outline_M, *this, [&](int row, int first, int last) {
-    std::uint8_t* costs = &open.costs_[static_cast<std::size_t>(row) * width_];
-    for (int column = std::max(first, 0); column <= std::min(last, width_ - 1); ++column) {
-      if (costs[column] == kInscribedCost) costs[column] = kInscribedCost - 1;
-    }
-  });
-  return open;
+  return Eased(outline_M, kInscribedCost);
 }
 
 Costmap Costmap::WithInscribedRadius(double inscribed_radius) const {

@@ -44,10 +44,6 @@ bool Worse(const Candidate& a, const Candidate& b) { return b.Key() < a.Key(); }
 
 double Speed(const geometry::Twist2& V) { return std::hypot(V.vx, V.vy); }
 
-double Approach(double now, double wanted, double change) {
-  return std::clamp(wanted, now - change, now + change);
-}
-
 bool IsUsable(double limit) { return std::isfinite(limit) && limit >= 0.0; }
 
 void Check(const DwaParams& p) {
@@ -130,8 +126,10 @@ struct DwaPlanner::Impl {
   DwaResult Brake(const Costmap& costmap, const geometry::Pose2& X_MB, const geometry::Twist2& V_B);
   DwaResult Turn(const Costmap& costmap, const geometry::Pose2& X_MB, const geometry::Twist2& V_B);
   double TurningSpeed(double angle) const;
-  std::optional<double> FreeTurn(const Costmap& costmap, const geometry::Pose2& X_MB,
-                                 SweptFootprint* sweep) const;
+  std::optional<double> TurnToGoal(const Costmap& costmap, const geometry::Pose2& X_MB,
+                                   SweptFootprint* sweep) const {
+    return FreeTurn(costmap, X_MB, X_MGoal_.yaw, turn_sign_, sweep);
+  }
   DwaResult MakeRoom(const Costmap& costmap, const geometry::Pose2& X_MB,
                      const geometry::Twist2& V_B);
   std::optional<Eigen::Vector2d> FindRoom(const Costmap& costmap, const geometry::Pose2& X_MB);
@@ -147,10 +145,6 @@ struct DwaPlanner::Impl {
   }
   double GoalDistance(const geometry::Pose2& X_MB) const {
     return (X_MGoal_.position() - X_MB.position()).norm();
-  }
-  bool IsStopped(const geometry::Twist2& V_B) const {
-    return Speed(V_B) <= params_.stopped_linear_velocity &&
-           std::abs(V_B.wz) <= params_.stopped_angular_velocity;
   }
   void LeaveGoal();
 
@@ -222,7 +216,7 @@ bool DwaPlanner::Impl::IsReached(const Costmap& costmap, const geometry::Pose2& 
   const double distance = GoalDistance(X_MB);
   if (distance > params_.xy_goal_tolerance) return false;
   return CanMoveSideways() || distance <= kInnerShare * params_.xy_goal_tolerance ||
-         !FreeTurn(costmap, {X_MGoal_.x, X_MGoal_.y, X_MB.yaw}, &Wide());
+         !TurnToGoal(costmap, {X_MGoal_.x, X_MGoal_.y, X_MB.yaw}, &Wide());
 }
 
 /// None: it is there, or something is in its way.
@@ -258,7 +252,7 @@ DwaResult DwaPlanner::Impl::Drive(const Costmap& costmap, const geometry::Pose2&
   for (auto sweep = sweeps_.begin(); sweep != sweeps_.end() && !best; ++sweep)
     best = BestWithObstacles(candidates, costmap, X_MB, &*sweep);
   if (!best) {  // come to rest as gently as the limits say; from there other ways may open
-    return IsStopped(V_B) ? result : Brake(costmap, X_MB, V_B);
+    return IsStopped(V_B, params_) ? result : Brake(costmap, X_MB, V_B);
   }
   guard_.Chosen(best->V_B, X_MB);
   result.status = DwaStatus::kDriving;
@@ -380,11 +374,11 @@ DwaResult DwaPlanner::Impl::AtGoal(const Costmap& costmap, const geometry::Pose2
   guard_.Reset();
   if (std::abs(YawError(X_MB)) > params_.yaw_goal_tolerance) {
     if (!turning_) turning_at_ = 0.0;
-    turning_ = turning_ || IsStopped(V_B);
+    turning_ = turning_ || IsStopped(V_B, params_);
     return turning_ ? Turn(costmap, X_MB, V_B) : Brake(costmap, X_MB, V_B);
   }
   turning_ = false;
-  if (!IsStopped(V_B)) return Brake(costmap, X_MB, V_B);
+  if (!IsStopped(V_B, params_)) return Brake(costmap, X_MB, V_B);
   if (GoalDistance(X_MB) <= params_.xy_goal_tolerance) return {DwaStatus::kGoalReached, {}, 0};
   ++num_missed_;
   LeaveGoal();  // it came to rest too far off after all
@@ -409,10 +403,8 @@ bool DwaPlanner::Impl::IsBrisk() const {
 DwaResult DwaPlanner::Impl::Brake(const Costmap& costmap, const geometry::Pose2& X_MB,
                                   const geometry::Twist2& V_B) {
   const geometry::Twist2 braked = Braked(V_B, limits_, params_.control_period);
-  const double to_stop = std::max(TimeToStop(Speed(braked), limits_.max_linear_acceleration),
-                                  TimeToStop(braked.wz, limits_.max_angular_acceleration));
-  // Slowing down evenly covers half the way of driving on.
-  if (!Exact().IsFree(costmap, X_MB, braked, params_.control_period + 0.5 * to_stop)) {
+  if (!Exact().IsFree(costmap, X_MB, braked,
+                      TimeToCover(braked, limits_, params_.control_period))) {
     return {DwaStatus::kNoValidTrajectory, {}, 1};
   }
   return {DwaStatus::kDriving, braked, 1};
@@ -422,14 +414,14 @@ DwaResult DwaPlanner::Impl::Turn(const Costmap& costmap, const geometry::Pose2& 
                                  const geometry::Twist2& V_B) {
   if (room_) return MakeRoom(costmap, X_MB, V_B);
   std::optional<double> turn;
-  if (turn_sign_ != 0) turn = FreeTurn(costmap, X_MB, &Exact());
+  if (turn_sign_ != 0) turn = TurnToGoal(costmap, X_MB, &Exact());
   for (std::size_t i = 0; turn_sign_ == 0 && i + 1 < sweeps_.size() && !turn; ++i)
-    turn = FreeTurn(costmap, X_MB, &sweeps_[i]);
+    turn = TurnToGoal(costmap, X_MB, &sweeps_[i]);
   if (!turn) {
     turn_sign_ = 0;
     const DwaResult aside = MakeRoom(costmap, X_MB, V_B);
     if (aside.status == DwaStatus::kDriving) return aside;
-    turn = FreeTurn(costmap, X_MB, &Exact());
+    turn = TurnToGoal(costmap, X_MB, &Exact());
     if (!turn) return aside;
   }
   turn_sign_ = *turn < 0.0 ? -1 : 1;
@@ -449,22 +441,6 @@ double DwaPlanner::Impl::TurningSpeed(double angle) const {
   const double slowest = std::min(params_.min_angular_velocity, limits_.max_angular_velocity);
   const double stoppable = std::sqrt(2.0 * limits_.max_angular_acceleration * angle);
   return std::min({std::max(angle, slowest), stoppable, limits_.max_angular_velocity});
-}
-
-/// The signed angle to the goal's heading through which the robot can turn here without contact:
-/// the shorter way, else the longer one. A turn begun is kept while it is far from done.
-std::optional<double> DwaPlanner::Impl::FreeTurn(const Costmap& costmap,
-                                                 const geometry::Pose2& X_MB,
-                                                 SweptFootprint* sweep) const {
-  double turn = YawError(X_MB);
-  double other = turn - std::copysign(2.0 * geometry::kPi, turn);
-  if (std::abs(turn) > 0.5 * geometry::kPi && turn * turn_sign_ < 0.0) std::swap(turn, other);
-  for (double angle : {turn, other}) {
-    if (sweep->IsFree(costmap, X_MB, {0.0, 0.0, std::copysign(1.0, angle)}, std::abs(angle))) {
-      return angle;
-    }
-  }
-  return std::nullopt;
 }
 
 DwaResult DwaPlanner::Impl::MakeRoom(const Costmap& costmap, const geometry::Pose2& X_MB,
@@ -515,7 +491,7 @@ std::optional<Eigen::Vector2d> DwaPlanner::Impl::FindRoom(const Costmap& costmap
     if ((X_MGoal_.position() - place).norm() > radius) continue;
     if ((X_MB.position() - place).norm() <= kRoomReached) continue;
     if (!IsWayFree(costmap, X_MB, place)) continue;
-    if (FreeTurn(costmap, {place.x(), place.y(), X_MB.yaw}, &Wide())) return place;
+    if (TurnToGoal(costmap, {place.x(), place.y(), X_MB.yaw}, &Wide())) return place;
   }
   return std::nullopt;
 }

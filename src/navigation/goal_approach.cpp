@@ -62,6 +62,25 @@ double SpeedOfTurn(double angle, const robot::MotionSet& limits) {
   return std::copysign(speed, angle);
 }
 
+double TurnBegun(double angle, int sign) {
+  const double turn = geometry::WrapToPi(angle);
+  const bool is_other_way = std::abs(turn) > 0.5 * geometry::kPi && turn * sign < 0.0;
+  return is_other_way ? turn + sign * 2.0 * geometry::kPi : turn;
+}
+
+std::optional<double> FreeTurn(const Costmap& costmap, const Pose2& X_MB, double yaw, int sign,
+                               SweptFootprint* sweep) {
+  const double shorter = geometry::WrapToPi(yaw - X_MB.yaw);
+  const double longer = shorter - std::copysign(2.0 * geometry::kPi, shorter);
+  const double first = TurnBegun(shorter, sign);
+  for (const double angle : {first, first == shorter ? longer : shorter}) {
+    if (sweep->IsFree(costmap, X_MB, {0.0, 0.0, std::copysign(1.0, angle)}, std::abs(angle))) {
+      return angle;
+    }
+  }
+  return std::nullopt;
+}
+
 GoalApproach::GoalApproach(const DwaParams& params) : params_(params) {}
 
 void GoalApproach::BeginTo(const Pose2& X_MGoal) {
@@ -76,26 +95,8 @@ void GoalApproach::BeginFrom(const Pose2& X_MB, const Pose2& X_MGoal) {
   missing_M_ = X_MGoal.position() - X_MB.position();
 }
 
-bool GoalApproach::IsStopped(const Twist2& V_B) const {
-  return std::hypot(V_B.vx, V_B.vy) <= params_.stopped_linear_velocity &&
-         std::abs(V_B.wz) <= params_.stopped_angular_velocity;
-}
-
 Vector2d GoalApproach::Place(const Pose2& X_MB) const {
   return missing_M_ ? Vector2d(X_MB.position() + *missing_M_) : X_MGoal_.position();
-}
-
-/// The signed angle to a heading through which the base can turn where it stands: the shorter way,
-/// else the longer one.
-std::optional<double> GoalApproach::FreeTurn(const Costmap& costmap, const Pose2& X_MB, double yaw,
-                                             SweptFootprint* sweep) const {
-  const double turn = geometry::WrapToPi(yaw - X_MB.yaw);
-  for (const double angle : {turn, turn - std::copysign(2.0 * geometry::kPi, turn)}) {
-    if (sweep->IsFree(costmap, X_MB, {0.0, 0.0, std::copysign(1.0, angle)}, std::abs(angle))) {
-      return angle;
-    }
-  }
-  return std::nullopt;
 }
 
 /// How it goes there: of front and back what takes less turning, before and after. False if
@@ -106,31 +107,26 @@ bool GoalApproach::Choose(const Costmap& costmap, const Pose2& X_MB, SweptFootpr
   if (CanMoveSideways()) {
     const Vector2d way_B = X_MB.Inverse() * p_MTo_;
     yaw_ = X_MB.yaw;
-    sign_ = 0.0;
+    sign_ = 0;
     return sweep->IsFree(costmap, X_MB, {way_B.x(), way_B.y(), 0.0}, 1.0);
   }
   double least = std::numeric_limits<double>::infinity();
   for (const double side : {0.0, geometry::kPi}) {
     const double yaw = geometry::WrapToPi(std::atan2(way_M.y(), way_M.x()) + side);
-    const auto turn = FreeTurn(costmap, X_MB, yaw, sweep);
+    const auto turn = FreeTurn(costmap, X_MB, yaw, 0, sweep);
     if (!turn) continue;
     const double ahead = side == 0.0 ? way_M.norm() : -way_M.norm();
     if (!sweep->IsFree(costmap, {X_MB.x, X_MB.y, yaw}, {ahead, 0.0, 0.0}, 1.0)) continue;
-    const auto last = FreeTurn(costmap, {p_MTo_.x(), p_MTo_.y(), yaw}, X_MGoal_.yaw, sweep);
+    const auto last = FreeTurn(costmap, {p_MTo_.x(), p_MTo_.y(), yaw}, X_MGoal_.yaw, 0, sweep);
     if (!last || std::abs(*turn) + std::abs(*last) >= least) continue;
     least = std::abs(*turn) + std::abs(*last);
     yaw_ = yaw;
-    sign_ = *turn < 0.0 ? -1.0 : 1.0;
+    sign_ = *turn < 0.0 ? -1 : 1;
   }
   return std::isfinite(least);
 }
 
-/// A turn begun is kept while it is far from done.
-double GoalApproach::TurnLeft(double yaw) const {
-  const double turn = geometry::WrapToPi(yaw_ - yaw);
-  const bool is_long = std::abs(turn) > 0.5 * geometry::kPi && turn * sign_ < 0.0;
-  return is_long ? turn + sign_ * 2.0 * geometry::kPi : turn;
-}
+double GoalApproach::TurnLeft(double yaw) const { return TurnBegun(yaw_ - yaw, sign_); }
 
 Twist2 GoalApproach::Turn(const Pose2& X_MB, const Twist2& V_B) const {
   Twist2 velocity = Braked(V_B, limits_, params_.control_period);
@@ -163,17 +159,10 @@ std::optional<Twist2> GoalApproach::Drive(const Pose2& X_MB, const Twist2& V_B) 
                 Ramped(commanded_.vy, V_B.vy, wanted.y(), change), turning};
 }
 
-/// [s] Braking evenly covers half the way of driving on.
-double GoalApproach::Stopping(const Twist2& V_B) const {
-  return params_.control_period +
-         0.5 * std::max(TimeToStop(std::hypot(V_B.vx, V_B.vy), limits_.max_linear_acceleration),
-                        TimeToStop(V_B.wz, limits_.max_angular_acceleration));
-}
-
 GoalApproach::Step GoalApproach::Update(const Costmap& costmap, const Pose2& X_MB,
                                         const Twist2& V_B, SweptFootprint* sweep) {
   Twist2 velocity = Braked(V_B, limits_, params_.control_period);
-  if (stage_ == Stage::kStopping && IsStopped(V_B)) {
+  if (stage_ == Stage::kStopping && IsStopped(V_B, params_)) {
     if (!Choose(costmap, X_MB, sweep)) {
       End();
       return {State::kBlocked, {}};
@@ -196,7 +185,8 @@ GoalApproach::Step GoalApproach::Update(const Costmap& costmap, const Pose2& X_M
     }
     velocity = *next;
   }
-  if (sweep->IsFree(costmap, X_MB, velocity, Stopping(velocity))) {
+  if (sweep->IsFree(costmap, X_MB, velocity,
+                    TimeToCover(velocity, limits_, params_.control_period))) {
     commanded_ = velocity;
     return {State::kDriving, velocity};
   }

@@ -28,6 +28,15 @@ class GoalWatch {
 /// go.
 double SpeedOfTurn(double angle, const robot::MotionSet& limits);
 
+/// [rad] Signed: the shorter way of an angle; of a turn that has begun, with a sign, its own way
+/// while that is far from done.
+double TurnBegun(double angle, int sign);
+
+/// The signed angle to a heading through which the base can turn where it stands without contact:
+/// the shorter way, or that of a turn begun (TurnBegun; sign 0: none has), else the other one.
+std::optional<double> FreeTurn(const Costmap& costmap, const geometry::Pose2& X_MB, double yaw,
+                               int sign, SweptFootprint* sweep);
+
 /// Brings a base from nearby to the place of its goal without sampling velocities, of which each
 /// may lead past it. A base that moves sideways creeps there as it is headed; another one turns its
 /// front or its back to the place, drives there straight, and leaves the turn to the goal's heading
@@ -60,16 +69,12 @@ class GoalApproach {
   enum class Stage { kNone, kStopping, kTurning, kDriving };
 
   bool CanMoveSideways() const { return params_.max_lateral_velocity > 0.0; }
-  bool IsStopped(const geometry::Twist2& V_B) const;
   Eigen::Vector2d Place(const geometry::Pose2& X_MB) const;
   bool Choose(const Costmap& costmap, const geometry::Pose2& X_MB, SweptFootprint* sweep);
-  std::optional<double> FreeTurn(const Costmap& costmap, const geometry::Pose2& X_MB, double yaw,
-                                 SweptFootprint* sweep) const;
   double TurnLeft(double yaw) const;
   geometry::Twist2 Turn(const geometry::Pose2& X_MB, const geometry::Twist2& V_B) const;
   std::optional<geometry::Twist2> Drive(const geometry::Pose2& X_MB,
                                         const geometry::Twist2& V_B) const;
-  double Stopping(const geometry::Twist2& V_B) const;
 
   DwaParams params_;
   robot::MotionSet limits_;
@@ -78,7 +83,7 @@ class GoalApproach {
   std::optional<Eigen::Vector2d> missing_M_;  // [m] to be driven; none: to the goal's place
   Eigen::Vector2d p_MTo_{0.0, 0.0};           // while it drives
   double yaw_{0.0};                           // [rad] with which it drives
-  double sign_{0.0};                          // of the turn to it
+  int sign_{0};                               // of the turn to it
   geometry::Twist2 commanded_;                // in the last cycle
 };
 

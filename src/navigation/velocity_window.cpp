@@ -121,14 +121,29 @@ geometry::Twist2 Braked(const geometry::Twist2& V_B, const robot::MotionSet& lim
   return {V_B.vx * scale, V_B.vy * scale, std::copysign(turning, V_B.wz)};
 }
 
+bool IsStopped(const geometry::Twist2& V_B, const DwaParams& params) {
+  return std::hypot(V_B.vx, V_B.vy) <= params.stopped_linear_velocity &&
+         std::abs(V_B.wz) <= params.stopped_angular_velocity;
+}
+
 double TimeToStop(double velocity, double acceleration) {
   return acceleration > 0.0 ? std::abs(velocity) / acceleration : 0.0;
+}
+
+double TimeToCover(const geometry::Twist2& V_B, const robot::MotionSet& limits, double period) {
+  return period +
+         0.5 * std::max(TimeToStop(std::hypot(V_B.vx, V_B.vy), limits.max_linear_acceleration),
+                        TimeToStop(V_B.wz, limits.max_angular_acceleration));
+}
+
+double Approach(double now, double wanted, double change) {
+  return std::clamp(wanted, now - change, now + change);
 }
 
 double Ramped(double commanded, double measured, double wanted, double change) {
   const double lag = kFollowed * change;
   const double now = std::clamp(commanded, measured - lag, measured + lag);
-  return std::clamp(wanted, now - change, now + change);
+  return Approach(now, wanted, change);
 }
 
 }  // namespace hires::navigation

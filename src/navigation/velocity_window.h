@@ -37,8 +37,17 @@ std::vector<geometry::Twist2> ReachableVelocities(const DwaParams& params,
 /// The velocity one control period later when braking as hard as the limits allow.
 geometry::Twist2 Braked(const geometry::Twist2& V_B, const robot::MotionSet& limits, double period);
 
+bool IsStopped(const geometry::Twist2& V_B, const DwaParams& params);
+
 /// [s] A base that cannot brake counts as one that need not.
 double TimeToStop(double velocity, double acceleration);
+
+/// [s] of driving on at a velocity for one period that covers the way of braking evenly after it,
+/// too: half of what driving on for as long would cover.
+double TimeToCover(const geometry::Twist2& V_B, const robot::MotionSet& limits, double period);
+
+/// From `now` to `wanted` by `change` at most.
+double Approach(double now, double wanted, double change);
 
 /// The next of a row of commands that go to `wanted` by `change` at most in a period. From the last
 /// command, for a base that lags would hardly be slowed down from what it was measured to do; but

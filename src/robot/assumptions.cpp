@@ -8,15 +8,15 @@
 #include <set>
 
 #include "hires/base/text.h"
+#include "hires/robot/link_bounds.h"
 #include "robot/base_height.h"
 
 namespace hires::robot {
 namespace {
 
-using geometry::Pose3;
+using Bounds = std::vector<geometry::Aabb>;  // LinkBounds
 using IsGiven = std::function<bool(const std::string&)>;
 
-constexpr double kFootprintTop = 2.0;  // [m] above the floor: what is higher passes over all
 constexpr std::size_t kMostNames = 6;
 
 std::string Few(const std::vector<std::string>& names) {
@@ -25,43 +25,20 @@ std::string Few(const std::vector<std::string>& names) {
   return fmt::format("{} and {} more", base::Join(first, ", "), names.size() - kMostNames);
 }
 
-/// Boxes around the shapes of each link, in the base frame.
-std::vector<geometry::Aabb> BoundsByLink(const Robot& robot) {
-  const std::vector<Pose3> X_R = ForwardKinematics(robot.model, robot.profile.joints);
-  const Pose3 X_BR = X_R[*robot.model.FindLink(robot.profile.base_link)].Inverse();
-  std::vector<geometry::Aabb> bounds(robot.model.links.size());
-  for (std::size_t i = 0; i < bounds.size(); ++i) {
-    for (const geometry::Collision& shape : robot.model.links[i].collisions)
-      bounds[i].Include(geometry::BoundsOf(shape.shape, X_BR * (X_R[i] * shape.X_BS)));
-  }
-  return bounds;
-}
-
-std::string FootprintText(const Robot& robot) {
+std::string FootprintText(const Robot& robot, const Bounds& bounds) {
   geometry::Aabb hull;
   for (const Eigen::Vector2d& p : robot.profile.footprint) hull.Include({p.x(), p.y(), 0.0});
   const Eigen::Vector3d size = hull.upper - hull.lower;
-  const std::vector<geometry::Aabb> bounds = BoundsByLink(robot);
-  double widest = 0.0;
-  std::string link;
-  for (std::size_t i = 0; i < bounds.size(); ++i) {
-    if (bounds[i].lower.z() > kFootprintTop) continue;
-    const double side = std::max(std::abs(bounds[i].lower.y()), std::abs(bounds[i].upper.y()));
-    if (robot.model.links[i].collisions.empty() || side <= widest + 1e-6) continue;
-    widest = side;
-    link = robot.model.links[i].name;
-  }
   return fmt::format(
       "footprint: the outline of all shapes, {:.2f} m long and {:.2f} m wide, and '{}' reaches "
       "farthest to a side; if that is wrong, write `footprint: [{{x: .., y: ..}}, ...]` in a "
       "profile",
-      size.x(), size.y(), link);
+      size.x(), size.y(), WidestLink(robot, bounds));
 }
 
 /// What lies above all that a footprint is made of, and is held against nothing there.
-std::vector<std::string> LeftOut(const Robot& robot) {
+std::vector<std::string> LeftOut(const Robot& robot, const Bounds& bounds) {
   std::vector<std::string> names;
-  const std::vector<geometry::Aabb> bounds = BoundsByLink(robot);
   for (std::size_t i = 0; i < bounds.size(); ++i) {
     if (robot.model.links[i].collisions.empty()) continue;
     if (bounds[i].lower.z() > kFootprintTop) names.push_back(robot.model.links[i].name);
@@ -70,8 +47,7 @@ std::vector<std::string> LeftOut(const Robot& robot) {
 }
 
 /// Whether what a link carries sticks out of all else, seen from above.
-bool SticksOut(const Robot& robot, int above) {
-  const std::vector<geometry::Aabb> bounds = BoundsByLink(robot);
+bool SticksOut(const Robot& robot, const Bounds& bounds, int above) {
   std::vector<Eigen::Vector2d> carried, others;
   for (int i = 0; i < static_cast<int>(bounds.size()); ++i) {
     if (robot.model.links[i].collisions.empty()) continue;
@@ -88,7 +64,7 @@ bool SticksOut(const Robot& robot, int above) {
 }
 
 /// Movable joints but wheels, that no file puts anywhere and that the footprint depends on.
-std::vector<std::string> JointsAtZero(const Robot& robot) {
+std::vector<std::string> JointsAtZero(const Robot& robot, const Bounds& bounds) {
   std::vector<std::string> names;
   const RobotModel& model = robot.model;
   for (std::size_t i = 0; i < model.links.size(); ++i) {
@@ -97,7 +73,7 @@ std::vector<std::string> JointsAtZero(const Robot& robot) {
         joint && joint->mimics.empty() &&
         (joint->type == JointType::kRevolute || joint->type == JointType::kPrismatic);
     if (!moves || robot.profile.joints.count(joint->name) > 0) continue;
-    if (SticksOut(robot, static_cast<int>(i))) names.push_back(joint->name);
+    if (SticksOut(robot, bounds, static_cast<int>(i))) names.push_back(joint->name);
   }
   return names;
 }
@@ -163,15 +139,16 @@ std::vector<std::string> LaserLinks(const RobotModel& model, const std::string& 
 std::vector<std::string> AssumptionsOf(const Robot& robot, const IsGiven& is_given,
                                        const std::string& urdf_path) {
   std::vector<std::string> texts;
-  if (!is_given("footprint")) texts.push_back(FootprintText(robot));
-  const std::vector<std::string> left_out = LeftOut(robot);
+  const Bounds bounds = LinkBounds(robot);
+  if (!is_given("footprint")) texts.push_back(FootprintText(robot, bounds));
+  const std::vector<std::string> left_out = LeftOut(robot, bounds);
   if (!left_out.empty()) {
     texts.push_back(
         fmt::format("left out of the footprint, as they lie more than {:g} m over the "
                     "floor: {}",
                     kFootprintTop, Few(left_out)));
   }
-  const std::vector<std::string> at_zero = JointsAtZero(robot);
+  const std::vector<std::string> at_zero = JointsAtZero(robot, bounds);
   if (!at_zero.empty()) {
     texts.push_back(fmt::format(
         "joints: at 0, or at the limit next to it, stand {}; write `joints: {{{}: ..}}` "
@@ -183,10 +160,10 @@ std::vector<std::string> AssumptionsOf(const Robot& robot, const IsGiven& is_giv
         "base_link: its shapes reach {:.3f} m below it, so it is so high over the floor; "
         "a link base_footprint in the URDF would say it",
         robot.base_height));
-  } else if (LowestShape(robot) > kFloorSlack && !is_given("base_link")) {
+  } else if (LowestShape(bounds) > kFloorSlack && !is_given("base_link")) {
     texts.push_back(fmt::format(
         "base_link: '{}' is taken to lie on the floor, its lowest shape {:.3f} m over it",
-        robot.profile.base_link, LowestShape(robot)));
+        robot.profile.base_link, LowestShape(bounds)));
   }
   if (robot.profile.laser_link.empty()) {
     texts.push_back(LaserText(robot.model, base::ReadTextFile(urdf_path)));

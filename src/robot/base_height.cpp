@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "hires/geometry/pose.h"
+#include "hires/robot/link_bounds.h"
 
 namespace hires::robot {
 namespace {
@@ -28,22 +29,15 @@ void PutRootBelow(const Pose3& X_RF, const std::string& name, RobotModel* model)
 
 }  // namespace
 
-double LowestShape(const Robot& robot) {
-  const std::vector<Pose3> X_R = ForwardKinematics(robot.model, robot.profile.joints);
-  const Pose3 X_BR = X_R[*robot.model.FindLink(robot.profile.base_link)].Inverse();
-  geometry::Aabb bounds;
-  bool has_any = false;
-  for (std::size_t i = 0; i < robot.model.links.size(); ++i) {
-    for (const geometry::Collision& shape : robot.model.links[i].collisions) {
-      bounds.Include(geometry::BoundsOf(shape.shape, X_BR * (X_R[i] * shape.X_BS)));
-      has_any = true;
-    }
-  }
-  return has_any ? bounds.lower.z() : 0.0;
+double LowestShape(const std::vector<geometry::Aabb>& bounds) {
+  geometry::Aabb all;
+  for (const geometry::Aabb& of_one : bounds) all.Include(of_one);
+  const bool has_any = all.lower.z() <= all.upper.z();
+  return has_any ? all.lower.z() : 0.0;
 }
 
 void StandOnFloor(Robot* robot) {
-  const double lowest = LowestShape(*robot);
+  const double lowest = LowestShape(LinkBounds(*robot));
   if (lowest >= -kFloorSlack) return;
   const std::vector<Pose3> X_R = ForwardKinematics(robot->model, robot->profile.joints);
   const Pose3& X_RB = X_R[*robot->model.FindLink(robot->profile.base_link)];

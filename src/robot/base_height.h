@@ -9,8 +9,8 @@ namespace hires::robot {
 constexpr double kFloorSlack = 0.005;
 
 /// [m] of the lowest collision shape over base_link, joints in the driving posture; 0 where there
-/// is no shape.
-double LowestShape(const Robot& robot);
+/// is no shape.  @param bounds  LinkBounds of a robot
+double LowestShape(const std::vector<geometry::Aabb>& bounds);
 
 /// Has the robot drive on the floor: where its shapes reach below base_link, the link
 /// "base_footprint" takes its place, which is put below it at the height of the lowest shape, or is

@@ -11,6 +11,7 @@
 #include "hires/base/param_reader.h"
 #include "hires/base/spelling.h"
 #include "hires/base/text.h"
+#include "hires/robot/link_bounds.h"
 #include "robot/assumptions.h"
 #include "robot/base_height.h"
 #include "robot/drive_guess.h"
@@ -23,8 +24,6 @@ namespace {
 using base::Between;
 using base::ParamReader;
 using geometry::Pose3;
-
-constexpr double kTopOfFootprint = 2.0;  // [m] above the base frame: higher, it passes over all
 
 MotionSet ReadMotionSet(ParamReader in) {
   MotionSet set;
@@ -392,7 +391,7 @@ std::vector<Eigen::Vector2d> CornersOf(const RobotModel& model, const std::strin
     if (!counts(static_cast<int>(i))) continue;
     for (const geometry::Collision& collision : model.links[i].collisions) {
       const auto outline = geometry::OutlineInBand(
-          collision.shape, X_BR * (X_R[i] * collision.X_BS), 0.0, kTopOfFootprint);
+          collision.shape, X_BR * (X_R[i] * collision.X_BS), 0.0, kFootprintTop);
       if (outline) points.insert(points.end(), outline->begin(), outline->end());
     }
   }
@@ -429,7 +428,7 @@ geometry::Polygon OutlineOf(const RobotModel& model, const std::string& base_lin
       fmt::format("robot '{}': no collision shape lies 0 to {} m above link '{}', so there is no "
                   "footprint; add "
                   "<collision> shapes, or give 'footprint' in a profile",
-                  model.name, kTopOfFootprint, base_link));
+                  model.name, kFootprintTop, base_link));
 }
 
 geometry::Polygon BaseOutlineOf(const Robot& robot) {

@@ -242,12 +242,8 @@ std::optional<RobotContact> PlanarRobot::FindContact(
     if (!touch) continue;
     geometry::Collision part = links_.bodies()[i].collisions[touch->shape];
     part.X_BS = X_M_[i] * part.X_BS;
-    const auto& statics = scene_->world.statics;
-    const auto body = std::find_if(statics.begin(), statics.end(), [&](const auto& fixed) {
-      return fixed.name == fixed_names_[touch->fixed];
-    });
-    if (body != statics.end()) return ContactWith(part, *body, scene_->world);
-    return RobotContact{part.name, fixed_names_[touch->fixed]};
+    if (touch->fixed == 0) return RobotContact{part.name, fixed_names_.front()};  // the floor
+    return ContactWith(part, scene_->world.statics[touch->fixed - 1], scene_->world);
   }
   const std::optional<Hands::Blocked>& blocked = hands_.blocked();
   if (!blocked) return std::nullopt;

@@ -199,11 +199,8 @@ std::vector<NamedOutline> NamedOutlinesInBand(const World& world, double z_min, 
       std::vector<geometry::Polygon> outlines;
       AppendStatic({body.name, body.X_MB, {shape}}, z_min, z_max, &outlines);
       const std::string name = NameOf(body, shape);
-      const auto source = world.sources.find(name);
-      for (geometry::Polygon& outline : outlines) {
-        named.push_back(
-            {name, source == world.sources.end() ? "" : source->second, std::move(outline)});
-      }
+      for (geometry::Polygon& outline : outlines)
+        named.push_back({name, SourceOf(name, world), std::move(outline)});
     }
   }
   return named;

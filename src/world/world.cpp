@@ -119,6 +119,11 @@ std::string NameOf(const StaticBody& body, const geometry::Collision& shape) {
   return body.name + "::" + shape.name;
 }
 
+std::string SourceOf(const std::string& name, const World& world) {
+  const auto found = world.sources.find(name);
+  return found == world.sources.end() ? "" : found->second;
+}
+
 Eigen::AlignedBox2d Inset(const Eigen::AlignedBox2d& extent, double edge) {
   return {(extent.min().array() + edge).min(0.0).matrix(),
           (extent.max().array() - edge).max(0.0).matrix()};

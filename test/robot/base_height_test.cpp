@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "hires/base/rng.h"
+#include "hires/robot/link_bounds.h"
 #include "robot/assumptions.h"
 #include "support/rounds.h"
 #include "support/temporary_folder.h"
@@ -61,7 +62,7 @@ TEST(StandOnFloorTest, NothingDependsOnWhichLinkIsTheRoot) {
     for (int root = 0; root < 3; ++root) {
       const Robot robot = LoadRobotFromUrdf(folder.Write("r.urdf", UrdfOf(tower, root)));
       EXPECT_NEAR(robot.base_height, tower.z[root], 1e-9);
-      EXPECT_NEAR(LowestShape(robot), 0.0, 1e-9);
+      EXPECT_NEAR(LowestShape(LinkBounds(robot)), 0.0, 1e-9);
       ASSERT_EQ(robot.profile.footprint.size(), first.profile.footprint.size());
       for (std::size_t k = 0; k < first.profile.footprint.size(); ++k)
         EXPECT_TRUE(robot.profile.footprint[k].isApprox(first.profile.footprint[k], 1e-9));

@@ -74,6 +74,8 @@ class Costmap {
 
  private:
   bool Covers(const geometry::Polygon& outline_M) const;
+  /// Below an outline what costs `most` or less costs less than kInscribedCost.
+  Costmap Eased(const geometry::Polygon& outline_M, std::uint8_t most) const;
   void SetCostsFrom(const world::OccupancyGrid& grid);
   void Inflate(const std::vector<std::pair<int, int>>& cells);
   std::uint8_t CostAt(double distance) const;  ///< cells to the nearest obstacle, in [m]

@@ -87,6 +87,9 @@ struct World {
 /// far as its file gives names.
 std::string NameOf(const StaticBody& body, const geometry::Collision& shape);
 
+/// Where what is called so stands in its file; "" where that is not known.
+std::string SourceOf(const std::string& name, const World& world);
+
 /// Reads an SDF world. Models with `<static>true</static>` (or one link that is fixed to the world)
 /// become StaticBody, single-link models become loose objects (one ObjectModel per distinct
 /// description), `<frame>` elements become areas, and

@@ -72,11 +72,6 @@ std::optional<geometry::Collision> AboveFloor(geometry::Collision shape,
   return shape;
 }
 
-std::string SourceOf(const std::string& name, const world::World& world) {
-  const auto found = world.sources.find(name);
-  return found == world.sources.end() ? "" : found->second;
-}
-
 }  // namespace
 
 std::string ToString(const RobotContact& contact) {
@@ -100,7 +95,7 @@ RobotContact ContactWith(const geometry::Collision& part_M, const world::StaticB
     if (!part.Touches(part_M.X_BS, obstacle, X_MS)) continue;
     const std::string name = world::NameOf(body, shape);
     return {part_M.name, name, part.MeetingPoint(part_M.X_BS, obstacle, X_MS).head<2>(),
-            SourceOf(name, world)};
+            world::SourceOf(name, world)};
   }
   return {part_M.name, body.name};  // which touch by a hair, as others count
 }
@@ -146,7 +141,7 @@ RobotClearance::RobotClearance(const std::vector<geometry::Collision>& robot_B,
       const std::string name = world::NameOf(body, whole);
       const auto shape = AboveFloor(whole, body.X_MB, floor_top);
       if (!shape) continue;
-      if (auto prism = MakePrism(name, SourceOf(name, world), *shape, body.X_MB)) {
+      if (auto prism = MakePrism(name, world::SourceOf(name, world), *shape, body.X_MB)) {
         obstacles_.push_back(*std::move(prism));
       }
     }

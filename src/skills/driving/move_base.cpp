@@ -6,6 +6,7 @@
 #include "hires/base/error.h"
 #include "hires/geometry/angles.h"
 #include "hires/robot/echoes.h"
+#include "hires/robot/link_bounds.h"
 #include "skills/driving/way_blocked.h"
 #include "skills/posture_skills.h"
 
@@ -52,14 +53,9 @@ std::optional<navigation::CarFollower> MakeFollower(const DrivingContext& contex
 }
 
 double RobotHeight(const robot::Robot& robot) {
-  geometry::Aabb bounds;
-  const auto X_RL = robot::ForwardKinematics(robot.model, robot.profile.joints);
-  const geometry::Pose3 X_BR = X_RL[*robot.model.FindLink(robot.profile.base_link)].Inverse();
-  for (const geometry::Collision& shape :
-       robot::FrozenCollisions(robot.model, robot.profile.joints)) {
-    bounds.Include(geometry::BoundsOf(shape.shape, X_BR * shape.X_BS));
-  }
-  return bounds.upper.z();
+  geometry::Aabb all;
+  for (const geometry::Aabb& link : robot::LinkBounds(robot)) all.Include(link);
+  return all.upper.z();
 }
 
 /// In whole steps: arms in no known posture, measured and never quite the same, give the same
@@ -325,8 +321,7 @@ std::optional<Status> MoveBase::Plan(const robot::Observation& observation) {
     case navigation::PathStatus::kNoPath:
       return Failed({base::FailureCode::kNoPath,
                      {},
-                     WhyNoPath(*context_, *map, observation.X_MB, X_MGoal_,
-                               narrow_ ? std::optional<NarrowPlace>(*narrow_) : std::nullopt)});
+                     WhyNoPath(*context_, *map, observation.X_MB, X_MGoal_, narrow_.get())});
     case navigation::PathStatus::kFound:
       break;
   }

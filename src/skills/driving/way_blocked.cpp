@@ -9,7 +9,7 @@
 #include <utility>
 
 #include "hires/geometry/angles.h"
-#include "hires/robot/robot_model.h"
+#include "hires/robot/link_bounds.h"
 
 namespace hires::skills {
 namespace {
@@ -175,8 +175,7 @@ class Explainer {
     double least = costmap_.resolution();
     for (const world::NamedOutline& obstacle : *context_.obstacles) {
       const double distance = geometry::Distance(obstacle.outline_M, cell);
-      if (nearest != nullptr && distance >= least) continue;
-      if (distance > least) continue;
+      if (distance > least || (nearest != nullptr && distance == least)) continue;
       nearest = &obstacle;
       least = distance;
     }
@@ -199,32 +198,16 @@ class Explainer {
 
   double NeededWidth() const { return 2.0 * geometry::InscribedRadius(context_.footprint); }
 
-  /// "the base 0.53 m wide, link 'arm' makes it so wide".
+  /// "the base is 0.53 m wide with its padding ('arm' reaches farthest)".
   std::string BaseText(double width) const {
-    return fmt::format("the base is {:.2f} m wide{}", width, WidestLink());
+    const robot::Robot& robot = *context_.robot;
+    const std::string link = robot::WidestLink(robot, robot::LinkBounds(robot));
+    return fmt::format(
+        "the base is {:.2f} m wide{}", width,
+        link.empty() ? "" : fmt::format(" with its padding ('{}' reaches farthest)", link));
   }
 
  private:
-  /// The link that reaches farthest to a side, where another one is the base.
-  std::string WidestLink() const {
-    const robot::Robot& robot = *context_.robot;
-    const robot::RobotModel& model = robot.model;
-    const auto X_RL = robot::ForwardKinematics(model, robot.profile.joints);
-    const geometry::Pose3 X_BR = X_RL[*model.FindLink(robot.profile.base_link)].Inverse();
-    double farthest = 0.0;
-    std::string widest;
-    for (std::size_t i = 0; i < model.links.size(); ++i) {
-      for (const geometry::Collision& shape : model.links[i].collisions) {
-        const auto bounds = geometry::BoundsOf(shape.shape, X_BR * (X_RL[i] * shape.X_BS));
-        const double side = std::max(-bounds.lower.y(), bounds.upper.y());
-        if (side <= farthest + 1e-6) continue;
-        farthest = side;
-        widest = model.links[i].name;
-      }
-    }
-    return widest.empty() ? "" : fmt::format(" with its padding ('{}' reaches farthest)", widest);
-  }
-
   const DrivingContext& context_;
   const Costmap& costmap_;
 };
@@ -362,7 +345,7 @@ std::string WhyBlocked(const DrivingContext& context, const Costmap& costmap,
 }
 
 std::string WhyNoPath(const DrivingContext& context, const Costmap& costmap, const Pose2& X_MStart,
-                      const Pose2& X_MGoal, const std::optional<NarrowPlace>& narrow) {
+                      const Pose2& X_MGoal, const NarrowPlace* narrow) {
   const Explainer explainer(context, costmap);
   const auto ends_at = [](const Eigen::Vector2d& p_M) {
     return fmt::format("the way ends at x {:.2f} m, y {:.2f} m", p_M.x(), p_M.y());

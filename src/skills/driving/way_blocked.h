@@ -37,9 +37,9 @@ std::string WhyBlocked(const DrivingContext& context, const navigation::Costmap&
                        const std::string& place, const geometry::Pose2& X_MB);
 
 /// Where the way from start to goal ends, and by what.
-/// @param narrow  where the footprint is too wide, if that is why.
+/// @param narrow  where the footprint is too wide, if that is why; else null.
 std::string WhyNoPath(const DrivingContext& context, const navigation::Costmap& costmap,
                       const geometry::Pose2& X_MStart, const geometry::Pose2& X_MGoal,
-                      const std::optional<NarrowPlace>& narrow);
+                      const NarrowPlace* narrow);
 
 }  // namespace hires::skills

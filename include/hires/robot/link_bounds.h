@@ -1,0 +1,22 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "hires/robot/robot_profile.h"
+
+namespace hires::robot {
+
+/// [m] above base_link: what is higher passes over all, and is in no footprint.
+inline constexpr double kFootprintTop = 2.0;
+
+/// The box around the collision shapes of each link of the model, in the frame of base_link, joints
+/// in the driving posture; as Aabb begins, with nothing in it, for a link without shapes.
+/// @pre base_link is one of the model's.  @throws base::ConfigError as ForwardKinematics.
+std::vector<geometry::Aabb> LinkBounds(const Robot& robot);
+
+/// The link that reaches farthest to a side, of those that a footprint is made of; "" where none
+/// reaches to a side.  @param bounds  LinkBounds(robot)
+std::string WidestLink(const Robot& robot, const std::vector<geometry::Aabb>& bounds);
+
+}  // namespace hires::robot
