@@ -63,17 +63,40 @@ class FaceContacts {
     if (all_inside_) return;
     if (face_.disc_radius > 0.0) {
       AddDiscCrossings();
-    } else {
+    } else if (face_.corners.empty()) {
       AddRectangleCrossings();
       AddCorners();
+    } else {
+      AddPolygonCrossings();
+      for (const Eigen::Vector2d& corner : face_.corners) AddCorner(corner.x(), corner.y());
     }
   }
 
  private:
+  /// One side of a polygon, in the face.
+  struct Border {
+    Eigen::Vector2d from, to;
+    Eigen::Vector2d outwards;  ///< unit
+    double offset;             ///< [m] the face has outwards . p <= offset
+  };
+
+  Border BorderAfter(std::size_t corner) const {
+    const Eigen::Vector2d& from = face_.corners[corner];
+    const Eigen::Vector2d& to = face_.corners[(corner + 1) % face_.corners.size()];
+    const Eigen::Vector2d outwards =
+        Eigen::Vector2d(to.y() - from.y(), from.x() - to.x()).normalized();
+    return {from, to, outwards, outwards.dot(from)};
+  }
+
   bool IsInside(const Vector3d& p) const {
     if (face_.disc_radius > 0.0) {
       return p.x() * p.x() + p.y() * p.y() <= face_.disc_radius * face_.disc_radius;
     }
+    for (std::size_t i = 0; i < face_.corners.size(); ++i) {
+      const Border border = BorderAfter(i);
+      if (border.outwards.dot(p.head<2>()) > border.offset) return false;
+    }
+    if (!face_.corners.empty()) return true;
     return std::abs(p.x()) <= face_.half_u && std::abs(p.y()) <= face_.half_v;
   }
 
@@ -152,6 +175,15 @@ class FaceContacts {
       *to = std::min(*to, (-b + std::sqrt(root)) / a);
       return;
     }
+    for (std::size_t i = 0; i < face_.corners.size(); ++i) {
+      const Border border = BorderAfter(i);
+      const double speed = border.outwards.dot(way.head<2>());
+      const double room = border.offset - border.outwards.dot(start.head<2>());
+      if (speed > 0.0) *to = std::min(*to, room / speed);
+      if (speed < 0.0) *from = std::max(*from, room / speed);
+      if (speed == 0.0 && room < 0.0) *to = *from;
+    }
+    if (!face_.corners.empty()) return;
     ClipToStrip(start.x(), way.x(), face_.half_u, from, to);
     ClipToStrip(start.y(), way.y(), face_.half_v, from, to);
   }
@@ -188,14 +220,36 @@ class FaceContacts {
     }
   }
 
+  /// Where the rim crosses the sides of a polygon.
+  void AddPolygonCrossings() {
+    for (std::size_t i = 0; i < face_.corners.size(); ++i) {
+      const Border border = BorderAfter(i);
+      const double a = radius_ * border.outwards.dot(lowest_.head<2>());
+      const double b = radius_ * border.outwards.dot(side_.head<2>());
+      const double c = border.offset - border.outwards.dot(rim_centre_.head<2>());
+      const double length2 = a * a + b * b;
+      if (c * c >= length2) continue;
+      const double root = std::sqrt(length2 - c * c);
+      for (const double sign : {-1.0, 1.0}) {
+        const Vector3d p =
+            RimPoint((a * c - sign * b * root) / length2, (b * c + sign * a * root) / length2);
+        const Eigen::Vector2d along = border.to - border.from;
+        const double at = along.dot(p.head<2>() - border.from);
+        if (at >= 0.0 && at <= along.squaredNorm()) Add(p);
+      }
+    }
+  }
+
   /// The face's corners that lie under the cylinder's flat end.
   void AddCorners() {
     for (const double x : {-face_.half_u, face_.half_u}) {
-      for (const double y : {-face_.half_v, face_.half_v}) {
-        Vector3d p(x, y, HeightOfEndAt(x, y));
-        if ((p - rim_centre_).squaredNorm() <= radius_ * radius_) Add(p);
-      }
+      for (const double y : {-face_.half_v, face_.half_v}) AddCorner(x, y);
     }
+  }
+
+  void AddCorner(double x, double y) {
+    const Vector3d p(x, y, HeightOfEndAt(x, y));
+    if ((p - rim_centre_).squaredNorm() <= radius_ * radius_) Add(p);
   }
 
   /// Where the rim crosses the border of a disc, both taken as circles seen along the normal.
@@ -243,11 +297,6 @@ FlatFace FaceOf(const PlacedBox& box, int axis, double sign) {
   return face;
 }
 
-double ReachAlong(double axis_component, const PlacedCylinder& cylinder) {
-  const double sine2 = std::max(0.0, 1.0 - axis_component * axis_component);
-  return std::abs(axis_component) * cylinder.half_length + cylinder.radius * std::sqrt(sine2);
-}
-
 /// Least overlap along the cylinder's axis and square to it and one of the box's edges: those ways
 /// out that are no face's normal. All in the box's frame. Negative: apart.
 double LeastEdgeOverlap(const Vector3d& p, const Vector3d& axis, const PlacedCylinder& cylinder,
@@ -293,6 +342,11 @@ void ContactList::Reduce() {
     std::swap(distance2[kept], distance2[farthest]);
   }
   size_ = kAtMost;
+}
+
+double ReachAlong(double axis_component, const PlacedCylinder& cylinder) {
+  const double sine2 = std::max(0.0, 1.0 - axis_component * axis_component);
+  return std::abs(axis_component) * cylinder.half_length + cylinder.radius * std::sqrt(sine2);
 }
 
 FlatFace FloorFace() {

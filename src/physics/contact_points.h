@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 #include <array>
+#include <vector>
 
 #include "hires/geometry/shape.h"
 
@@ -53,15 +54,17 @@ struct PlacedBox {
 };
 
 /// A flat face with solid matter behind it. It reaches `half_u` and `half_v` along its own axes,
-/// or, where `disc_radius` is positive, that far all around. Infinite extents make a half space.
+/// or, where `disc_radius` is positive, that far all around, or, where there are corners, it is the
+/// convex polygon between them. Infinite extents make a half space.
 struct FlatFace {
-  Eigen::Vector3d centre;   ///< [m]
-  Eigen::Vector3d u;        ///< unit, in the face
-  Eigen::Vector3d v;        ///< unit, in the face; u x v = normal
-  Eigen::Vector3d normal;   ///< unit, out of the solid
-  double half_u;            ///< [m]
-  double half_v;            ///< [m]
-  double disc_radius{0.0};  ///< [m]
+  Eigen::Vector3d centre;                  ///< [m]
+  Eigen::Vector3d u;                       ///< unit, in the face
+  Eigen::Vector3d v;                       ///< unit, in the face; u x v = normal
+  Eigen::Vector3d normal;                  ///< unit, out of the solid
+  double half_u;                           ///< [m]
+  double half_v;                           ///< [m]
+  double disc_radius{0.0};                 ///< [m]
+  std::vector<Eigen::Vector2d> corners{};  ///< [m] along u and v, counter-clockwise
 };
 
 /// The half space z <= 0 of the world.
@@ -85,6 +88,10 @@ enum class QuickLook {
   kOnFace,     ///< a cylinder on a flat face: the contact points were added
   kUndecided,  ///< an edge or a corner may be involved: somebody else must look
 };
+
+/// How far a cylinder reaches along a direction from its centre [m].
+/// @param axis_component  of the direction (a unit) along the cylinder's axis
+double ReachAlong(double axis_component, const PlacedCylinder& cylinder);
 
 /// A is the cylinder, B the box.
 QuickLook AddCylinderOnBox(const PlacedCylinder& cylinder, const PlacedBox& box,

@@ -140,6 +140,10 @@ bool TryOwn(const PlacedShape& a, const PlacedShape& b, const Vector3d& lean,
     AddBoxOnBox(a.box(), b.box(), contacts);
     return true;
   }
+  if (a.is_polytope() && b.is_polytope()) {
+    AddPolytopeOnPolytope(a.polytope(), b.polytope(), contacts);
+    return true;
+  }
   if (a.kind() != Kind::kCylinder) return false;
   switch (b.kind()) {
     case Kind::kFloor:
@@ -150,6 +154,9 @@ bool TryOwn(const PlacedShape& a, const PlacedShape& b, const Vector3d& lean,
     case Kind::kCylinder:
       return AddCylinderOnCylinder(a.cylinder(), b.cylinder(), lean, contacts) !=
              QuickLook::kUndecided;
+    case Kind::kMesh:
+      return b.is_polytope() && AddCylinderOnPolytope(a.cylinder(), b.polytope(), lean, contacts) !=
+                                    QuickLook::kUndecided;
     default:
       return false;
   }
@@ -192,6 +199,7 @@ void PlacedShape::MakeBox(const geometry::Box& box) {
   size_ = box.size / 2;
   reach_ = size_.norm();
   inside_ = size_.minCoeff();
+  polytope_ = std::make_unique<const Polytope>(PolytopeOf(box));
   geom_.reset(dCreateBox(nullptr, box.size.x(), box.size.y(), box.size.z()));
 }
 
@@ -220,6 +228,7 @@ void PlacedShape::MakeMesh(const geometry::TriangleMesh& mesh) {
   for (const auto& triangle : mesh.triangles) {
     indices_.insert(indices_.end(), triangle.begin(), triangle.end());
   }
+  polytope_ = PolytopeOf(mesh);
   const auto lock = LockMeshes(true);
   inside_ = (bounds.upper - bounds.lower).minCoeff() / 4;  // a guess: it may be hollow
   mesh_data_.reset(dGeomTriMeshDataCreate());
@@ -238,6 +247,8 @@ void PlacedShape::Place(const Vector3d& p_WS, const Eigen::Matrix3d& R_WS) {
 PlacedCylinder PlacedShape::cylinder() const { return {p_WS_, R_WS_.col(2), size_.x(), size_.z()}; }
 
 PlacedBox PlacedShape::box() const { return {p_WS_, R_WS_, size_}; }
+
+PlacedPolytope PlacedShape::polytope() const { return {polytope_.get(), p_WS_, R_WS_}; }
 
 dxGeom* PlacedShape::geom() {
   if (kind_ != Kind::kFloor && !is_geom_in_place_) SetGeomPose(geom_.get(), p_WS_, R_WS_);
