@@ -12,8 +12,9 @@ MAX_TURN = 2.0             # [rad/s]
 MAX_ACCELERATION = numpy.array([2.0, 2.0, 2.0])  # [m/s^2], [m/s^2], [rad/s^2]
 TIMEOUT = 0.2              # [s]
 # Without a command in time the controller's target is zero at once, without its ramp, and without
-# motors nothing turns the wheels: what then brakes are gears and tyres. Assumed, not published.
-WHEEL_DECELERATION = 5.0   # [m/s^2], [rad/s^2]
+# motors nothing turns the wheels: what then brakes are gears and tyres. Assumed, not published; the
+# published efforts of wheels stop a simulated PR2 at 2.6 to 3.8 m/s^2 (docs/notes_physics.md).
+WHEEL_DECELERATION = 3.0   # [m/s^2], [rad/s^2]
 WHEEL_SLIP = 0.01          # share that the wheels turn more than the base moves
 WHEEL_TURN_SLIP = 0.03     # ... while turning: wheels say more than the gyroscope
 LONGEST_GAP = 0.02         # [s] of a time that counts as silence when this process was late
