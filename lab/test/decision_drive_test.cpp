@@ -7,6 +7,7 @@
 #include <memory>
 
 #include "lab/src/decision/decision_play.h"
+#include "support/rounds.h"
 
 namespace hires::lab::decision_drive_test {
 namespace {
@@ -87,6 +88,7 @@ TEST(DecisionDriveTest, SlowWinsWithALoadThatFallsWhereTheRobotIsFast) {
 }
 
 TEST(DecisionDriveTest, FastWinsWithALoadThatCannotFall) {
+  HIRES_LONG_CASE();
   const DecisionTask task = Carrying("block");
   const DecisionRecord record = Decide(task, {});
   EXPECT_EQ(Recommended(record), "fast");

@@ -17,6 +17,7 @@
 #include "perception/recognition/distance_field.h"
 #include "perception/recognition/model_fit.h"
 #include "perception/shape_mesh.h"
+#include "support/rounds.h"
 
 namespace hires::perception::recogniser_test {
 namespace {
@@ -237,6 +238,7 @@ TEST_F(RecogniserTest, ModelsOfOneShapeShareTheirConfidence) {
 /// view the middle is 7 mm off at most, and the sides are up to 17 mm too long (noise at rims,
 /// corners that are rounded off) and hardly too short (2 mm).
 TEST_F(RecogniserTest, AnUnknownThingHasABoxAroundWhatIsSeenOfIt) {
+  HIRES_LONG_CASE();
   int num_full = 0, num_hidden = 0, num_called_known = 0;
   for (std::uint64_t seed = 1; seed <= 40; ++seed) {
     const RandomTable table = tables_.Make(seed);

@@ -11,6 +11,7 @@
 #include "hires/robot/load_robot.h"
 #include "imagination/restaurant_rollouts.h"
 #include "imagination/room_rollouts.h"
+#include "support/rounds.h"
 
 namespace hires::imagination::other_robots_test {
 namespace {
@@ -44,6 +45,7 @@ TEST(DifferentialRobotTest, ItNeverMovesSideways) {
 
 // The tutorial's robot, to whose goal it has to turn: as it turns, its believed place moves.
 TEST(DifferentialRobotTest, NoDriveOfTheOwnRobotDithersAtItsGoal) {
+  HIRES_LONG_CASE();
   ASSERT_EQ(setenv("ROS_PACKAGE_PATH", HIRES_SOURCE_DIR, 1), 0);  // of model://sun
   const std::string own = std::string(HIRES_SOURCE_DIR) + "/examples/own_robot/";
   SetupConfig config = ReadSetupConfig(std::string(HIRES_SOURCE_DIR) + "/config/scene.yaml");

@@ -8,6 +8,7 @@
 
 #include "hires/base/error.h"
 #include "hires/localisation/localise_log.h"
+#include "support/rounds.h"
 #include "support/simulated_drive.h"
 
 namespace hires::localisation::monte_carlo_test {
@@ -142,6 +143,7 @@ TEST(MonteCarloTest, GlobalLocalisationFindsTheRobotInAnAsymmetricMap) {
 }
 
 TEST(MonteCarloTest, GlobalLocalisationMostlyFindsTheRobotBetweenRoomsThatLookAlike) {
+  HIRES_LONG_CASE();
   // Measured: 15. From where the drive begins the map looks nearly as after half a turn.
   EXPECT_GE(CountFound(TwoRooms()), 13);
 }
@@ -472,6 +474,7 @@ TEST(LocaliseLogTest, OdometryBetweenReadingsIsThatOfEvenMotion) {
 }
 
 TEST(LocaliseLogTest, RobotThatWasFoundInTheWrongRoomFirstIsToldToBeElsewhere) {
+  HIRES_LONG_CASE();
   int num_relocated = 0, num_wrong_before = 0;
   for (int seed = 801; seed <= 812; ++seed) {
     const SimulatedDrive drive = Drive(seed);

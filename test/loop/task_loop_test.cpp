@@ -9,6 +9,7 @@
 #include "loop/support/task_setup.h"
 #include "reports/task/timeline.h"
 #include "support/log_catcher.h"
+#include "support/rounds.h"
 
 namespace hires::loop::task_loop_test {
 namespace {
@@ -43,6 +44,7 @@ std::string Bits(const LoopRun& run) {
 }
 
 TEST(TaskLoopTest, ATaskIsDoneWithoutImagining) {
+  HIRES_LONG_CASE();
   const LoopRun run = PlayTask(TheSetup(), Topple("off"));
   EXPECT_EQ(run.report.outcome, AchieveOutcome::kSucceeded) << run.report.reason;
   EXPECT_TRUE(run.report.status.imaginations.empty());

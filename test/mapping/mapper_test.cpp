@@ -8,6 +8,7 @@
 #include "hires/base/error.h"
 #include "hires/localisation/filtered_log.h"
 #include "hires/mapping/map_judge.h"
+#include "support/rounds.h"
 #include "support/simulated_drive.h"
 
 namespace hires::mapping::mapper_test {
@@ -97,6 +98,7 @@ TEST(MapperTest, LongCorridorsAreNeitherBentNorShortened) {
 
 /// Odometry that errs by a tenth, along 33 m of corridor.
 TEST(MapperTest, BadOdometryDoesNotStretchTheOriginalCorridor) {
+  HIRES_LONG_CASE();
   const test_support::Course course = test_support::OriginalCourses().at(1);
   const std::string file = std::string(HIRES_SHARED_DATA) + "/" + course.map;
   if (!std::filesystem::exists(file)) GTEST_SKIP() << file << " is not there";
@@ -190,6 +192,7 @@ TEST(MapperTest, OdometryThatIsResetIsNoMotion) {
 
 /// Between two readings of which one is of the new frame nothing is interpolated.
 TEST(MapperTest, OdometryMayBeResetBetweenScans) {
+  HIRES_LONG_CASE();
   for (std::size_t more = 0; more < 4; ++more) {
     SimulatedDrive drive = TwoRoomsDrive();
     Reset({0.3, 0.0, geometry::kPi}, more, &drive.log);

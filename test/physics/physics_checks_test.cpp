@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "hires/physics/physics_world.h"
+#include "support/rounds.h"
 
 namespace hires::physics::physics_checks_test {
 namespace {
@@ -24,10 +25,12 @@ void ExpectAllPass(const UprightCylinder& body, const char* name) {
 }
 
 TEST(PhysicsChecksTest, MillOfTheThesisTextObeysTheory) {
+  HIRES_LONG_CASE();
   ExpectAllPass({0.037, 0.274, 0.140}, "mill of the text");
 }
 
 TEST(PhysicsChecksTest, MillOfTheAppendixObeysTheory) {
+  HIRES_LONG_CASE();
   ExpectAllPass({0.035, 0.300, 0.500}, "mill of the appendix");
 }
 

@@ -164,6 +164,7 @@ class BaseGuardTest(unittest.TestCase):
         self.requester.kill()
         self.require_gentle_stop('silent_middle_layer')
 
+    @long_case
     def test_a_suspended_middle_layer(self):
         self.drive()
         self.requester.signal(signal.SIGSTOP)
@@ -192,6 +193,7 @@ class BaseGuardTest(unittest.TestCase):
         self.scanner.kill()
         self.require_gentle_stop('stale_scan')
 
+    @long_case
     def test_lost_localisation(self):
         self.drive()
         self.localise(0.62)
@@ -199,6 +201,7 @@ class BaseGuardTest(unittest.TestCase):
         self.localise(0.05)
         self.require_nothing_moves()
 
+    @long_case
     def test_odometry_that_stops_coming(self):
         self.drive()
         self.robot.signal(signal.SIGSTOP)

@@ -411,6 +411,7 @@ class BlackboardTest(unittest.TestCase):
         return self.msg.Fluent(concept_name='Pose', instance=instance, properties=[
             self.msg.FluentProperty(role='hasFrame', type='xsd:string', text=frame)])
 
+    @long_case
     def test_a_slow_reader_sees_its_gap_and_catches_up(self):
         reader = self.read('blackboard/framed')
         begun = reader.last
@@ -662,6 +663,7 @@ class BlackboardTest(unittest.TestCase):
         self.assertEqual(ended.returncode, 1)
         self.assertIn('bad_too.yaml', ended.stderr)
 
+    @long_case
     def test_the_command_line_compares_episodes_with_and_without_the_node(self):
         ids = []
         for x in (1.0, 2.0):

@@ -199,6 +199,7 @@ class ExecutionMonitorTest(unittest.TestCase):
         self.require(task, self.codes.PREEMPTED)
         self.assertEqual(self.system.done('tuck_arms'), [])
 
+    @long_case
     def test_preempted_while_effects_are_awaited(self):
         self.system.behave('tuck_arms', silent=True)
         task = self.achieve(CARRY)
@@ -215,6 +216,7 @@ class ExecutionMonitorTest(unittest.TestCase):
         task.cancel()
         self.require(task, self.codes.PREEMPTED)
 
+    @long_case
     def test_what_was_imagined_for_a_request_that_is_cancelled_counts(self):
         self.system.behave('imagine', answer='hang')
         self.system.behave('move_base', hang=True)
@@ -308,6 +310,7 @@ class ExecutionMonitorTest(unittest.TestCase):
         self.assertIn('plan', result.reason)
         self.assertEqual(self.system.done('tuck_arms'), [])
 
+    @long_case
     def test_a_planner_that_dies_before_a_repair(self):
         self.system.behave('move_base', hang=True)
         task = self.achieve(CARRY)
@@ -361,6 +364,7 @@ class ExecutionMonitorTest(unittest.TestCase):
                  if s.started == s.started and s.action.name != 'imagine']
         self.assertEqual(len([e for e in ended if e]), len(begun))
 
+    @long_case
     def test_tasks_in_quick_succession_each_have_their_episode(self):
         before = self.system.episodes()[-1].id if self.system.episodes() else 0
         self.system.behave('tuck_arms', hang=True)

@@ -62,12 +62,19 @@ class ImaginationBadInputTest(unittest.TestCase):
         return ActionGoal(cls.client, goal).result()
 
     def tearDown(self):
-        """The client lives, and answers as it did in the beginning."""
         self.assertTrue(self.system.client.is_running(), self.system.client.output())
+        self.assertEqual(self.system.times_joined(1), 1)  # the worker never went away
+        if os.environ.get('HIRES_LONG_TESTS'):
+            self.require_the_answer_of_the_beginning()
+
+    @classmethod
+    def tearDownClass(cls):
+        cls('require_the_answer_of_the_beginning').require_the_answer_of_the_beginning()
+
+    def require_the_answer_of_the_beginning(self):
         result = self.ask(self.goal())
         for field in ('outcome', 'recommended', 'predictions', 'why', 'simulated_seconds'):
             self.assertEqual(getattr(result, field), getattr(self.good, field), field)
-        self.assertEqual(self.system.times_joined(1), 1)  # the worker never went away
 
     def require_invalid(self, goal, *texts):
         asked = ActionGoal(self.client, goal)

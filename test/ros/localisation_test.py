@@ -268,6 +268,7 @@ class LocalisationTest(HearsEchoes, unittest.TestCase):
             self.assertLess(errors[-1][0], 0.15)
             self.assertLess(spread()[1], 0.02)
 
+    @long_case
     def test_a_laser_that_hangs_upside_down_is_turned_over(self):
         from geometry_msgs.msg import Quaternion
         from tf2_msgs.msg import TFMessage
@@ -303,6 +304,7 @@ class LocalisationTest(HearsEchoes, unittest.TestCase):
         self.assertNotEqual(first, other)
         self.assertEqual(nodes[0].transforms, nodes[1].transforms)
 
+    @long_case
     def test_another_map_is_begun_with_where_the_robot_was(self):
         node = self.begun()
         self.drive(10, node)
@@ -401,6 +403,7 @@ class LocalisationTest(HearsEchoes, unittest.TestCase):
             self.assertLess(self.drive(10, node)[-1][0], 0.15)
             self.say(node, lambda v: v['message'] == 'good')
 
+    @long_case
     def test_odometry_that_begins_again_at_zero_is_gone_along_with(self):
         node = self.begun()
         self.drive(10, node)

@@ -251,12 +251,14 @@ class MiddleLayerTest(unittest.TestCase):
         # 1 m/s^2 as configured, in steps of 0.05 s; the base's velocity loop swings a little.
         self.assertLess(max(speed(a) - speed(b) for a, b in braking), 2.0 * 0.05)
 
+    @long_case
     def test_preempting_a_blind_drive_leaves_the_robot_standing(self):
         goal = self.execute_until(lambda s: speed(s) > 0.1, 'the robot to move',
                                   'move_base_blind', 'preManipulationAreaEastTable2')
         self.preempt(goal)
         self.system.wait_for_truth(lambda s: speed(s) < 0.02, 'the robot to stand')
 
+    @long_case
     def test_the_time_limit_ends_a_drive(self):
         goal = self.system.execute('move_base', 'preManipulationAreaEastCounter1', limit=2.0)
         result = self.require(goal.result(), self.codes.FAILED, 'timed_out')
@@ -362,6 +364,7 @@ class MiddleLayerTest(unittest.TestCase):
         self.require(goal.result(), self.codes.SUCCEEDED)
         wait_until(lambda: not self.held(), 'the mug to be let go')
 
+    @long_case
     def test_preempting_while_holding_keeps_what_is_held(self):
         self.begin_at_counter()
         self.watch_world()

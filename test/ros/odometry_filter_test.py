@@ -152,6 +152,7 @@ class OdometryFilterTest(unittest.TestCase):
         for index in (0, 7, 35):
             self.assertTrue(0.0 < pose.pose.covariance[index] < 0.1, pose.pose.covariance)
 
+    @long_case
     def test_a_unit_upside_down_corrects_as_well(self):
         node = Node(self)
         self.step(node, frame=UPSIDE_DOWN)
@@ -277,6 +278,7 @@ class OdometryFilterTest(unittest.TestCase):
         self.drive(150, node)
         self.assertLess(self.errors(self.said(node))[0], 0.1)
 
+    @long_case
     def test_a_clock_that_begins_again_is_gone_along_with(self):
         node = Node(self)
         self.step(node)

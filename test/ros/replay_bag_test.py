@@ -264,6 +264,7 @@ class ReplayBagTest(unittest.TestCase):
         self.wait_until_forgotten()
         self.require_same_results(self.play('--topics', '/imagine/goal'))
 
+    @long_case
     def test_rosbag_play_of_everything_needs_the_old_results_out_of_the_way(self):
         self.wait_until_forgotten()
         old = {}

@@ -232,6 +232,7 @@ class WorkerHostTest(Family, unittest.TestCase):
         self.assertEqual(host.wait(), 69, host.output())
         self.assertEqual(processes_with(MARK, self.mark), {})
 
+    @long_case
     def test_a_worker_ends_when_the_main_master_hangs_for_good(self):
         host = self.start_host(main_master_timeout=1.0)
         self.wait_until_ready(host)

@@ -279,6 +279,7 @@ class WorldTrackerTest(unittest.TestCase):
         self.look({**book, **bowl})
         self.assertIn('bowl1', self.names())
 
+    @long_case
     def test_an_object_may_be_seen_in_another_frame_than_the_cameras(self):
         self.at_table()
         self.rest()
@@ -447,6 +448,7 @@ class WorldTrackerTest(unittest.TestCase):
         self.look({'': ('coffee_cup', shift(0.07))})
         diagnostics(self.rospy, 'world_tracker', lambda v: v[ambiguous] == '0')
 
+    @long_case
     def test_an_object_that_fell_is_on_nothing(self):
         self.at_table()
         upright = translation(7.60, 11.25, 0.73)
@@ -496,6 +498,7 @@ class WorldTrackerTest(unittest.TestCase):
             return any(text in line for line in self.tracker.lines)
         wait_until(is_told, 'the warning: ' + text)
 
+    @long_case
     def test_how_warm_objects_are_is_said_unless_it_is_ambiguous_or_no_number(self):
         def told(name, degrees, *mixed_with):
             return self.msg.ObjectTemperature(object=name, temperature=degrees, num_pixels=100,
@@ -525,6 +528,7 @@ class WorldTrackerTest(unittest.TestCase):
             self.assertAlmostEqual(self.value('poseBook1', 'hasX'), x, delta=0.02)
             self.assertGreater(self.progress[-1].sequence, 0)
 
+    @long_case
     def test_the_blackboard_is_away_for_a_while(self):
         self.expect('robotAtPR21', 'hasArea', 'nearstartarea1')
         self.blackboard.kill()
@@ -542,6 +546,7 @@ class WorldTrackerTest(unittest.TestCase):
                          'what was seen meanwhile, without another look')
         self.assertEqual(self.value('poseBook1', 'hasFrame'), None)
 
+    @long_case
     def test_what_is_seen_after_the_end_of_an_episode_is_no_fault(self):
         def call(service, kind, **fields):
             answer = self.rospy.ServiceProxy('blackboard/' + service, kind)(**fields)
