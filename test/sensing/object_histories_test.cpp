@@ -10,7 +10,6 @@
 #include "hires/geometry/angles.h"
 #include "hires/robot/gripper.h"
 #include "hires/sensing/object_memory.h"
-#include "support/rounds.h"
 #include "support/sight_scenes.h"
 
 /// Long random histories of things of two kinds, seen by a recogniser that knows kinds alone.
@@ -451,13 +450,12 @@ class History {
 
 TEST(ObjectHistoriesTest, ANameStandsForOneThingAndStaysWithIt) {
   Tally tally;
-  const int num = hires::test_support::Rounds(200);
-  for (int seed = 1; seed <= num && !HasFailure(); ++seed) History(seed, &tally).Play(6);
-  EXPECT_GT(tally.kept, 100 * num);
-  EXPECT_GT(tally.followed, num);
-  EXPECT_GT(tally.returned, num / 10);
-  EXPECT_GT(tally.swapped, 2 * num / 5);
-  EXPECT_GT(tally.hidden, 10 * num);
+  for (std::uint64_t seed = 1; seed <= 200 && !HasFailure(); ++seed) History(seed, &tally).Play(6);
+  EXPECT_GT(tally.kept, 20000);
+  EXPECT_GT(tally.followed, 200);
+  EXPECT_GT(tally.returned, 20);
+  EXPECT_GT(tally.swapped, 80);
+  EXPECT_GT(tally.hidden, 2000);
   EXPECT_LT(tally.undecided, 0.05 * tally.followed);
   EXPECT_LT(tally.ambiguous, 0.01 * tally.looks);
 }
