@@ -182,10 +182,10 @@ std::vector<Pose2> MoveBaseDrive::WayFrom(const Pose2& X_MB, double resolution) 
 bool MoveBaseDrive::IsWayFree(const robot::Observation& seen) const {
   // Where the robot stands it can stand, whatever the map says.
   const Costmap costmap = driving_->costmap->WithObstacles(seen.obstacles_M)
-                              .WithRoomFor(geometry::Transformed(seen.X_MB, driving_->footprint));
+                              .WithRoomFor(Transformed(seen.X_MB, driving_->body));
   const std::vector<Pose2> way = WayFrom(seen.X_MB, costmap.resolution());
   return std::all_of(way.begin(), way.end(), [&](const Pose2& X_MB) {
-    return costmap.FootprintCost(driving_->footprint, X_MB) < navigation::kLethalCost;
+    return costmap.FootprintCost(driving_->body, X_MB) < navigation::kLethalCost;
   });
 }
 

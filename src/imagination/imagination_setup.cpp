@@ -377,7 +377,8 @@ ImaginationSetup LoadImaginationSetup(const SetupConfig& scene) {
   robot::Robot robot = robot::LoadAnyRobot(scene.robot);
   SetupConfig config = ForRobot(scene, robot);
   setup.uncertainty = std::make_shared<const Uncertainty>(LoadUncertaintyOf(config));
-  if (robot.profile.laser_link.empty())
+  // Where the place is drawn, and nothing that is seen now corrects what the map has.
+  if (!config.driving.obstacle_layer && config.localisation == "drawn")
     config.driving.place_margin = PlaceMargin(*setup.uncertainty, robot.profile.footprint);
   std::optional<world::OccupancyGrid> map;
   if (!config.map.empty()) map = world::LoadMap(config.map);

@@ -25,7 +25,7 @@ double ApproachSpeed(double distance, double deceleration, double reaction_time)
   return std::sqrt(lost * lost + 2.0 * deceleration * distance) - lost;
 }
 
-CarFollower::CarFollower(const CarFollowerParams& params, const geometry::Polygon& footprint,
+CarFollower::CarFollower(const CarFollowerParams& params, const Footprint& footprint,
                          double min_turning_radius)
     : params_(params), footprint_(footprint), sharpest_(1.0 / min_turning_radius) {
   HIRES_CHECK(min_turning_radius > 0.0 && params.control_period > 0.0 &&

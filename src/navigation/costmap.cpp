@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "hires/base/check.h"
 
@@ -128,6 +129,35 @@ class LineTransform {
 
 }  // namespace
 
+geometry::Polygon PaddedFromMiddle(const geometry::Polygon& part, double padding) {
+  if (part.empty()) return part;
+  Eigen::Vector2d lower = part.front(), upper = part.front();
+  for (const Eigen::Vector2d& p : part) {
+    lower = lower.cwiseMin(p);
+    upper = upper.cwiseMax(p);
+  }
+  const Eigen::Vector2d middle = 0.5 * (lower + upper);
+  geometry::Polygon moved = part;
+  for (Eigen::Vector2d& p : moved) p -= middle;
+  moved = geometry::Padded(moved, padding);
+  for (Eigen::Vector2d& p : moved) p += middle;
+  return moved;
+}
+
+Footprint Padded(const Footprint& footprint, double padding) {
+  Footprint padded(geometry::Padded(footprint.outline, padding));
+  for (const geometry::Polygon& part : footprint.by_layer)
+    padded.by_layer.push_back(PaddedFromMiddle(part, padding));
+  return padded;
+}
+
+Footprint Transformed(const geometry::Pose2& X_AB, const Footprint& footprint_B) {
+  Footprint footprint_A(geometry::Transformed(X_AB, footprint_B.outline));
+  for (const geometry::Polygon& part : footprint_B.by_layer)
+    footprint_A.by_layer.push_back(geometry::Transformed(X_AB, part));
+  return footprint_A;
+}
+
 Costmap::Costmap(const world::OccupancyGrid& grid, double inscribed_radius,
                  const CostmapParams& params)
     : resolution_(grid.resolution),
@@ -198,7 +228,40 @@ bool Costmap::Covers(const geometry::Polygon& outline_M) const {
   });
 }
 
-std::uint8_t Costmap::CostBelow(const geometry::Polygon& outline_M) const {
+Costmap Costmap::WithLayer(const world::OccupancyGrid& grid, double radius) const {
+  HIRES_CHECK(grid.width == width_ && grid.height == height_ && grid.resolution == resolution_ &&
+                  grid.origin == origin_,
+              "a layer has its map's cells");
+  const double inscribed = std::min(radius, inscribed_radius_);
+  CostmapParams params = params_;
+  params.inflation_radius = std::max(0.0, params_.inflation_radius + inscribed - inscribed_radius_);
+  Costmap layered = *this;
+  layered.layers_.push_back(std::make_shared<const Costmap>(grid, inscribed, params));
+  return layered;
+}
+
+std::uint8_t Costmap::CostWithLayers(std::size_t cell) const {
+  std::uint8_t highest = costs_[cell];
+  for (const auto& layer : layers_)
+    highest = std::max(highest, std::min(layer->costs_[cell], kInscribedCost));
+  return highest;
+}
+
+bool Costmap::HasObstacle(int column, int row) const {
+  const std::size_t cell = static_cast<std::size_t>(row) * width_ + column;
+  return costs_[cell] == kLethalCost ||
+         std::any_of(layers_.begin(), layers_.end(),
+                     [&](const auto& layer) { return layer->costs_[cell] == kLethalCost; });
+}
+
+std::uint8_t Costmap::CostBelow(const Footprint& footprint_M) const {
+  std::uint8_t highest = OwnCostBelow(footprint_M.outline);
+  for (std::size_t i = 0; i < layers_.size() && highest < kLethalCost; ++i)
+    highest = std::max(highest, layers_[i]->OwnCostBelow(footprint_M.AtLayer(i)));
+  return highest;
+}
+
+std::uint8_t Costmap::OwnCostBelow(const geometry::Polygon& outline_M) const {
   if (!Covers(outline_M)) return kLethalCost;
   std::uint8_t highest = kFreeCost;
   ForEachSpan(outline_M, *this, [&](int row, int first, int last) {
@@ -210,9 +273,8 @@ std::uint8_t Costmap::CostBelow(const geometry::Polygon& outline_M) const {
   return highest;
 }
 
-std::uint8_t Costmap::FootprintCost(const geometry::Polygon& footprint,
-                                    const geometry::Pose2& X_MB) const {
-  return CostBelow(geometry::Transformed(X_MB, footprint));
+std::uint8_t Costmap::FootprintCost(const Footprint& footprint, const geometry::Pose2& X_MB) const {
+  return CostBelow(Transformed(X_MB, footprint));
 }
 
 Costmap Costmap::WithObstacles(const std::vector<geometry::Polygon>& outlines_M) const {
@@ -221,8 +283,9 @@ Costmap Costmap::WithObstacles(const std::vector<geometry::Polygon>& outlines_M)
   for (const geometry::Polygon& outline : outlines_M) {
     ForEachSpan(outline, *this, [&](int row, int first, int last) {
       for (int column = std::max(first, 0); column <= std::min(last, width_ - 1); ++column) {
-        if (extended.cost(column, row) >= kLethalCost) continue;
-        extended.costs_[static_cast<std::size_t>(row) * width_ + column] = kLethalCost;
+        std::uint8_t& cost = extended.costs_[static_cast<std::size_t>(row) * width_ + column];
+        if (cost >= kLethalCost) continue;
+        cost = kLethalCost;
         added.emplace_back(column, row);
       }
     });
@@ -237,8 +300,10 @@ Costmap Costmap::WithObstaclesAt(const std::vector<Eigen::Vector2d>& points_M) c
   for (const Eigen::Vector2d& point : points_M) {
     int column = 0, row = 0;
     CellOf(point, &column, &row);
-    if (!Inside(column, row) || extended.cost(column, row) >= kLethalCost) continue;
-    extended.costs_[static_cast<std::size_t>(row) * width_ + column] = kLethalCost;
+    if (!Inside(column, row)) continue;
+    std::uint8_t& cost = extended.costs_[static_cast<std::size_t>(row) * width_ + column];
+    if (cost >= kLethalCost) continue;
+    cost = kLethalCost;
     added.emplace_back(column, row);
   }
   extended.Inflate(added);
@@ -257,12 +322,29 @@ Costmap Costmap::Eased(const geometry::Polygon& outline_M, std::uint8_t most) co
   return eased;
 }
 
-Costmap Costmap::WithRoomFor(const geometry::Polygon& outline_M) const {
-  return Eased(outline_M, std::numeric_limits<std::uint8_t>::max());
+/// Below what of the robot is at a layer's heights things go; below the rest of it they stay, but
+/// do not keep its centre away.
+Costmap Costmap::WithRoomFor(const Footprint& footprint_M) const {
+  constexpr std::uint8_t kAll = std::numeric_limits<std::uint8_t>::max();
+  Costmap eased = Eased(footprint_M.outline, kAll);
+  for (std::size_t i = 0; i < layers_.size(); ++i) {
+    eased.layers_[i] = std::make_shared<const Costmap>(
+        layers_[i]->Eased(footprint_M.AtLayer(i), kAll).Eased(footprint_M.outline, kInscribedCost));
+  }
+  return eased;
 }
 
 Costmap Costmap::WithAccessTo(const geometry::Polygon& outline_M) const {
-  return Eased(outline_M, kInscribedCost);
+  Costmap eased = Eased(outline_M, kInscribedCost);
+  eased.layers_ = WithAccessUnder(outline_M).layers_;
+  return eased;
+}
+
+Costmap Costmap::WithAccessUnder(const geometry::Polygon& outline_M) const {
+  Costmap eased = *this;
+  for (auto& layer : eased.layers_)
+    layer = std::make_shared<const Costmap>(layer->Eased(outline_M, kInscribedCost));
+  return eased;
 }
 
 Costmap Costmap::WithInscribedRadius(double inscribed_radius) const {
@@ -279,7 +361,13 @@ Costmap Costmap::WithInscribedRadius(double inscribed_radius) const {
   CostmapParams params = params_;
   params.inflation_radius =
       std::max(0.0, params_.inflation_radius + inscribed_radius - inscribed_radius_);
-  return {grid, inscribed_radius, params};
+  Costmap changed(grid, inscribed_radius, params);
+  for (const auto& layer : layers_) {
+    const double radius = layer->inscribed_radius_ + inscribed_radius - inscribed_radius_;
+    changed.layers_.push_back(
+        std::make_shared<const Costmap>(layer->WithInscribedRadius(std::max(0.0, radius))));
+  }
+  return changed;
 }
 
 /// Where a cell's left neighbour is a new obstacle, too, that one is nearer to all that lies left,

@@ -76,13 +76,13 @@ std::vector<Eigen::Vector2d> PointsAlong(const std::vector<geometry::Pose2>& pat
   return points;
 }
 
-std::vector<SweptFootprint> SweepsOf(const DwaParams& params, const geometry::Polygon& footprint,
+std::vector<SweptFootprint> SweepsOf(const DwaParams& params, const Footprint& footprint,
                                      double margin) {
   std::vector<double> margins{kMargin};
   if (margin > 0.0) margins = {kMargin + margin, kMargin + 0.5 * margin, kMargin};
   std::vector<SweptFootprint> sweeps;
   for (const double more : margins)
-    sweeps.emplace_back(geometry::Padded(footprint, more), params.sim_granularity,
+    sweeps.emplace_back(Padded(footprint, more), params.sim_granularity,
                         params.angular_sim_granularity);
   sweeps.emplace_back(footprint, params.sim_granularity, params.angular_sim_granularity);
   return sweeps;
@@ -91,7 +91,7 @@ std::vector<SweptFootprint> SweepsOf(const DwaParams& params, const geometry::Po
 }  // namespace
 
 struct DwaPlanner::Impl {
-  Impl(const DwaParams& params, const geometry::Polygon& footprint)
+  Impl(const DwaParams& params, const Footprint& footprint)
       : params_(params),
         footprint_(footprint),
         sweeps_(SweepsOf(params, footprint, 0.0)),
@@ -150,7 +150,7 @@ struct DwaPlanner::Impl {
 
   DwaParams params_;
   robot::MotionSet limits_;
-  geometry::Polygon footprint_;
+  Footprint footprint_;
   double margin_{0.0};                  // [m]
   std::vector<SweptFootprint> sweeps_;  // with margins, the widest first; the last one without
   OscillationGuard guard_;
@@ -504,9 +504,9 @@ bool DwaPlanner::Impl::IsWayFree(const Costmap& costmap, const geometry::Pose2& 
 
 // ---- the planner ------------------------------------------------------------------------------
 
-DwaPlanner::DwaPlanner(const DwaParams& params, const geometry::Polygon& footprint) {
+DwaPlanner::DwaPlanner(const DwaParams& params, const Footprint& footprint) {
   Check(params);
-  HIRES_CHECK(footprint.size() >= 3, "a footprint has at least three corners");
+  HIRES_CHECK(footprint.outline.size() >= 3, "a footprint has at least three corners");
   impl_ = std::make_unique<Impl>(params, footprint);
 }
 DwaPlanner::DwaPlanner(const DwaPlanner& other) : impl_(std::make_unique<Impl>(*other.impl_)) {}

@@ -57,8 +57,8 @@ std::vector<CarPose> PathAlong(const Pose2& X_MStart, const std::vector<CarArc>&
 
 class CarSearch {
  public:
-  CarSearch(const Costmap& costmap, geometry::Polygon footprint, const Pose2& X_MGoal,
-            double radius, const CarPathParams& params, const CentreDistances& distances)
+  CarSearch(const Costmap& costmap, Footprint footprint, const Pose2& X_MGoal, double radius,
+            const CarPathParams& params, const CentreDistances& distances)
       : costmap_(costmap),
         footprint_(std::move(footprint)),
         X_MGoal_(X_MGoal),
@@ -217,7 +217,7 @@ class CarSearch {
   }
 
   const Costmap& costmap_;
-  geometry::Polygon footprint_;
+  Footprint footprint_;
   Pose2 X_MGoal_;
   CarPathParams params_;
   double cost_weight_;
@@ -241,8 +241,8 @@ std::vector<CarPose> ShortestCarPath(const Pose2& X_MStart, const Pose2& X_MGoal
   return PathAlong(X_MStart, ways.Shortest(X_MStart, X_MGoal), params.spacing);
 }
 
-CarPathResult PlanCarPath(const Costmap& costmap, const geometry::Polygon& footprint,
-                          const Pose2& X_MStart, const Pose2& X_MGoal, double min_turning_radius,
+CarPathResult PlanCarPath(const Costmap& costmap, const Footprint& footprint, const Pose2& X_MStart,
+                          const Pose2& X_MGoal, double min_turning_radius,
                           const CarPathParams& params) {
   HIRES_CHECK(
       min_turning_radius > 0.0 && params.steering_reserve >= 1.0 && params.spacing > 0.0 &&
@@ -252,8 +252,7 @@ CarPathResult PlanCarPath(const Costmap& costmap, const geometry::Polygon& footp
   const double radius = params.steering_reserve * min_turning_radius;
   const CentreDistances distances(costmap, X_MGoal.position(), X_MStart.position(), params.costs);
   for (const double clearance : {params.clearance, 0.0}) {
-    CarSearch search(costmap, geometry::Padded(footprint, clearance), X_MGoal, radius, params,
-                     distances);
+    CarSearch search(costmap, Padded(footprint, clearance), X_MGoal, radius, params, distances);
     result.status = !search.IsFree(X_MStart)  ? PathStatus::kStartBlocked
                     : !search.IsFree(X_MGoal) ? PathStatus::kGoalBlocked
                                               : PathStatus::kNoPath;

@@ -13,12 +13,18 @@ constexpr int kStride = 8;  // poses skipped in the first, coarse look
 
 }  // namespace
 
-SweptFootprint::SweptFootprint(geometry::Polygon footprint, double linear_step, double angular_step)
+SweptFootprint::SweptFootprint(Footprint footprint, double linear_step, double angular_step)
     : footprint_(std::move(footprint)),
       placed_(footprint_),
-      radius_(geometry::CircumscribedRadius(footprint_)),
+      inscribed_(geometry::InscribedRadius(footprint_.outline)),
+      radius_(geometry::CircumscribedRadius(footprint_.outline)),
       linear_step_(linear_step),
-      angular_step_(angular_step) {}
+      angular_step_(angular_step) {
+  for (const geometry::Polygon& part : footprint_.by_layer) {
+    outwards_.push_back(PaddedFromMiddle(part, 1.0));
+    for (std::size_t i = 0; i < part.size(); ++i) outwards_.back()[i] -= part[i];
+  }
+}
 
 int SweptFootprint::NumSteps(const Costmap& costmap, const geometry::Twist2& V_B, double duration,
                              double scale) const {
@@ -51,10 +57,19 @@ std::uint8_t SweptFootprint::HighestCost(const Costmap& costmap, const geometry:
 
 std::uint8_t SweptFootprint::CostAt(const Costmap& costmap, const geometry::Pose2& X_MB,
                                     double scale) {
-  const double c = scale * std::cos(X_MB.yaw), s = scale * std::sin(X_MB.yaw);
-  for (std::size_t i = 0; i < footprint_.size(); ++i) {
-    const Eigen::Vector2d& p = footprint_[i];
-    placed_[i] = {X_MB.x + c * p.x() - s * p.y(), X_MB.y + s * p.x() + c * p.y()};
+  const double c = std::cos(X_MB.yaw), s = std::sin(X_MB.yaw);
+  const auto place = [&](const Eigen::Vector2d& p, double by) {
+    const double along = by * c, across = by * s;
+    return Eigen::Vector2d(X_MB.x + along * p.x() - across * p.y(),
+                           X_MB.y + across * p.x() + along * p.y());
+  };
+  for (std::size_t i = 0; i < footprint_.outline.size(); ++i)
+    placed_.outline[i] = place(footprint_.outline[i], scale);
+  const double growth = (scale - 1.0) * inscribed_;
+  for (std::size_t k = 0; k < outwards_.size(); ++k) {
+    const geometry::Polygon& part = footprint_.by_layer[k];
+    for (std::size_t i = 0; i < part.size(); ++i)
+      placed_.by_layer[k][i] = place(part[i] + growth * outwards_[k][i], 1.0);
   }
   return costmap.CostBelow(placed_);
 }

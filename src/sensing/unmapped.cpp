@@ -11,7 +11,7 @@ bool IsExplained(const navigation::Costmap& map, const Eigen::Vector2d& p_M, dou
   const int reach = static_cast<int>(std::ceil(tolerance / map.resolution()));
   for (int y = row - reach; y <= row + reach; ++y) {
     for (int x = column - reach; x <= column + reach; ++x) {
-      if (map.Inside(x, y) && map.cost(x, y) == navigation::kLethalCost) return true;
+      if (map.Inside(x, y) && map.HasObstacle(x, y)) return true;
     }
   }
   return false;

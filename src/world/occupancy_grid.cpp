@@ -199,8 +199,11 @@ std::vector<NamedOutline> NamedOutlinesInBand(const World& world, double z_min, 
       std::vector<geometry::Polygon> outlines;
       AppendStatic({body.name, body.X_MB, {shape}}, z_min, z_max, &outlines);
       const std::string name = NameOf(body, shape);
-      for (geometry::Polygon& outline : outlines)
-        named.push_back({name, SourceOf(name, world), std::move(outline)});
+      const geometry::Aabb bounds = geometry::BoundsOf(shape.shape, body.X_MB * shape.X_BS);
+      for (geometry::Polygon& outline : outlines) {
+        named.push_back(
+            {name, SourceOf(name, world), std::move(outline), bounds.lower.z(), bounds.upper.z()});
+      }
     }
   }
   return named;

@@ -260,6 +260,21 @@ TEST(SetupConfigTest, ARobotWithoutALaserIsToldItsPlaceAndDrivesByTheMap) {
   EXPECT_THAT(file.WhyRefused(), AllOf(HasSubstr("laser_link"), HasSubstr("drawn")));
 }
 
+/// With or without a laser: what the drawn place may err is kept where nothing seen corrects it.
+TEST(SetupConfigTest, WhoDrivesByTheMapAloneKeepsWhatItsPlaceMayErr) {
+  SceneFile file;
+  file.root["uncertainty"] = file.folder.Write(
+      "place.yaml",
+      "localisation_x: {distribution: normal, mean: 0.0, sd: 0.03, unit: m, source: here}\n");
+  EXPECT_TRUE(file.Load().skills->driving->with_margin.empty());
+  file.root["obstacle_layer"] = "none";
+  const ImaginationSetup by_map = file.Load();
+  ASSERT_FALSE(by_map.skills->driving->with_margin.empty());
+  EXPECT_NEAR(by_map.skills->driving->with_margin.front().margin, 2.5 * 0.03, 1e-9);
+  file.root["uncertainty"] = "none";
+  EXPECT_TRUE(file.Load().skills->driving->with_margin.empty());
+}
+
 TEST(SetupConfigTest, RefusesTypos) {
   SceneFile file;
   file.root["rollout"]["setling_time"] = 0.5;

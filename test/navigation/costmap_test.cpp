@@ -72,7 +72,7 @@ TEST(CostmapTest, RoomIsMadeBelowTheOutlineAndNowhereElse) {
   const Costmap before(grid, kInscribed, Params(0.31));
   // Columns 3 to 5, rows 2 to 6.
   const Costmap after =
-      before.WithRoomFor({{0.31, 0.21}, {0.59, 0.21}, {0.59, 0.69}, {0.31, 0.69}});
+      before.WithRoomFor(geometry::Polygon{{0.31, 0.21}, {0.59, 0.21}, {0.59, 0.69}, {0.31, 0.69}});
   for (int row = 0; row < 10; ++row) {
     for (int column = 0; column < 10; ++column) {
       const bool is_below = column >= 3 && column <= 5 && row >= 2 && row <= 6;
@@ -81,8 +81,9 @@ TEST(CostmapTest, RoomIsMadeBelowTheOutlineAndNowhereElse) {
           << column << ", " << row;
     }
   }
-  EXPECT_LT(after.CostBelow({{0.31, 0.21}, {0.59, 0.21}, {0.59, 0.69}}), kInscribedCost);
-  EXPECT_NO_THROW(before.WithRoomFor({{-5.0, -5.0}, {0.2, 0.1}, {-5.0, 20.0}}));
+  EXPECT_LT(after.CostBelow(geometry::Polygon{{0.31, 0.21}, {0.59, 0.21}, {0.59, 0.69}}),
+            kInscribedCost);
+  EXPECT_NO_THROW(before.WithRoomFor(geometry::Polygon{{-5.0, -5.0}, {0.2, 0.1}, {-5.0, 20.0}}));
 }
 
 TEST(CostmapTest, AnotherRadiusIsAsIfMadeWithIt) {
@@ -177,6 +178,48 @@ TEST(CostmapTest, ObstaclesAddedLaterCountAsIfTheyHadBeenInTheGrid) {
       for (int column = 0; column < grid.width; ++column) {
         ASSERT_EQ(extended.cost(column, row), rebuilt.cost(column, row))
             << "seed " << seed << ", cell " << column << " " << row;
+      }
+    }
+  }
+}
+
+/// A footprint with its parts against one map for each: what stands in a layer is in the way of the
+/// part at its heights alone, whatever is done to the map.
+TEST(CostmapTest, WhatStandsInALayerIsInTheWayOfThatPartAlone) {
+  const base::Rng root(14);
+  for (int seed = 0; seed < 100; ++seed) {
+    base::Rng rng = root.Fork(seed);
+    const world::OccupancyGrid own = RandomGrid(60, 60, 0.002, &rng);
+    const world::OccupancyGrid other = RandomGrid(60, 60, 0.004, &rng);
+    const double radius = rng.Uniform(0.0, 0.2);
+    const std::vector<geometry::Polygon> more{RandomOutline(&rng)};
+    const Costmap alone = Costmap(own, 0.15, {}).WithObstacles(more);
+    const Costmap layer(other, std::min(radius, 0.15), {});
+    const Costmap layered = Costmap(own, 0.15, {}).WithLayer(other, radius).WithObstacles(more);
+    const double x = rng.Uniform(0.02, 0.2), y = rng.Uniform(0.02, 0.2);
+    Footprint footprint(Rectangle(-0.3, -0.2, 0.3, 0.2));
+    footprint.by_layer = {Rectangle(-x, -y, x, y)};
+    for (int i = 0; i < 20; ++i) {
+      const geometry::Pose2 X_MB{rng.Uniform(0.4, 2.6), rng.Uniform(0.4, 2.6),
+                                 rng.Uniform(-geometry::kPi, geometry::kPi)};
+      const bool is_free = alone.FootprintCost(footprint.outline, X_MB) < kLethalCost &&
+                           layer.FootprintCost(footprint.by_layer[0], X_MB) < kLethalCost;
+      ASSERT_EQ(layered.FootprintCost(footprint, X_MB) < kLethalCost, is_free) << seed;
+      const Costmap wider = layered.WithInscribedRadius(0.25);
+      ASSERT_EQ(wider.FootprintCost(footprint, X_MB) < kLethalCost, is_free) << seed;
+      const Footprint footprint_M = Transformed(X_MB, footprint);
+      EXPECT_LT(layered.WithRoomFor(footprint_M).CostBelow(footprint_M), kLethalCost);
+      const Costmap eased = layered.WithAccessUnder(footprint_M.outline);
+      ASSERT_EQ(eased.FootprintCost(footprint, X_MB) < kLethalCost, is_free) << seed;
+    }
+    for (int row = 0; row < own.height; ++row) {
+      for (int column = 0; column < own.width; ++column) {
+        ASSERT_EQ(layered.HasObstacle(column, row),
+                  alone.cost(column, row) == kLethalCost || layer.cost(column, row) == kLethalCost);
+        ASSERT_GE(layered.cost(column, row), alone.cost(column, row));
+        if (layer.cost(column, row) >= kInscribedCost) {
+          ASSERT_GE(layered.cost(column, row), kInscribedCost);
+        }
       }
     }
   }

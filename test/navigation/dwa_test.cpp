@@ -492,7 +492,7 @@ TEST(DwaTest, BrokenParametersAreRefused) {
   params = {};
   params.obstacle_scale = -1.0;
   EXPECT_THROW(DwaPlanner(params, PaddedFootprint()), std::logic_error);
-  EXPECT_THROW(DwaPlanner({}, {{0, 0}, {1, 0}}), std::logic_error);
+  EXPECT_THROW(DwaPlanner({}, geometry::Polygon{{0, 0}, {1, 0}}), std::logic_error);
   DwaPlanner planner({}, PaddedFootprint());
   EXPECT_THROW(planner.SetPath({}), std::logic_error);
   EXPECT_THROW(planner.SetMotionSet({-0.1, 1, 1, 1}), std::logic_error);

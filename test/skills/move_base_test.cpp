@@ -7,12 +7,14 @@
 #include <deque>
 #include <memory>
 
+#include "hires/base/rng.h"
 #include "hires/geometry/angles.h"
 #include "hires/skills/manipulation_context.h"
 #include "hires/world/occupancy_grid.h"
 #include "skills/point_robot.h"
 #include "skills/posture_skills.h"
 #include "support/planar_scan.h"
+#include "support/rounds.h"
 #include "support/scenes.h"
 
 namespace hires::skills::move_base_test {
@@ -420,8 +422,8 @@ TEST(FootprintOfTest, WhatCarriesNothingHasOnlyOne) {
 
 /// The nearest that a drive comes to what stands about [m]; 0: it touches.
 double ClearanceOfDrive(const world::World& world, const std::vector<geometry::Polygon>& posts,
-                        const std::string& posture, bool holds) {
-  const auto context = std::make_shared<const DrivingContext>(Pr2In(world));
+                        const std::string& posture, bool holds, const MoveBaseParams& params = {}) {
+  const auto context = std::make_shared<const DrivingContext>(Pr2In(world, params));
   const auto joints = ArmsOf(*context->robot, posture, holds);
   const geometry::Polygon outline =
       robot::OutlineOf(context->robot->model, context->robot->profile.base_link, joints);
@@ -451,6 +453,21 @@ TEST(MoveBaseTest, ArmsThatStickOutTouchNothing) {
   }
   EXPECT_GT(ClearanceOfDrive(room, posts, "armtuckedposture", false), 0.0);
   EXPECT_GT(ClearanceOfDrive(room, posts, "armcarryposture", true), 0.0);
+}
+
+/// What arms keep from things where the place errs and nothing shows how far.
+TEST(MoveBaseTest, ArmsThatStickOutKeepTheMarginOfThePlace) {
+  MoveBaseParams erring;
+  erring.place_margin = 0.1;
+  base::Rng rng(31);
+  for (int i = 0; i < hires::test_support::Rounds(24); ++i) {
+    world::World room = Room();
+    const double x = rng.Uniform(2.2, 3.3), y = rng.Uniform(1.4, 2.6);
+    room.statics = {Block("post", {0.1, 0.1, 1.0}, {x, y, 0.5})};
+    const std::vector<geometry::Polygon> posts{geometry::Transformed(
+        {x, y, 0.0}, {{-0.05, -0.05}, {0.05, -0.05}, {0.05, 0.05}, {-0.05, 0.05}})};
+    EXPECT_GE(ClearanceOfDrive(room, posts, "armcarryposture", true, erring), 0.1) << x << " " << y;
+  }
 }
 
 /// A drive with a leg below an arm that the map lacks: as an obstacle, or in the laser's scans.

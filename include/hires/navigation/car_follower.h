@@ -36,7 +36,7 @@ class CarFollower {
  public:
   /// @param footprint  Convex, padded, in the base frame [m].
   /// @pre periods, tolerances and distances > 0, min_turning_radius > 0 [m].
-  CarFollower(const CarFollowerParams& params, const geometry::Polygon& footprint,
+  CarFollower(const CarFollowerParams& params, const Footprint& footprint,
               double min_turning_radius);
 
   void SetPath(std::vector<CarPose> path);            ///< its last pose is the goal @pre not empty
@@ -73,7 +73,7 @@ class CarFollower {
   DwaResult AtRest(const geometry::Pose2& X_MB) const;
 
   CarFollowerParams params_;
-  geometry::Polygon footprint_;
+  Footprint footprint_;
   double sharpest_;  // [1/m]
   robot::MotionSet limits_;
   std::vector<CarPose> path_;

@@ -64,7 +64,7 @@ class DwaPlanner {
  public:
   /// @param footprint  Convex, padded, in the base frame [m].
   /// @pre periods, granularities and tolerances > 0, all other parameters >= 0.
-  DwaPlanner(const DwaParams& params, const geometry::Polygon& footprint);
+  DwaPlanner(const DwaParams& params, const Footprint& footprint);
   DwaPlanner(const DwaPlanner& other);
   DwaPlanner& operator=(const DwaPlanner& other);
   ~DwaPlanner();

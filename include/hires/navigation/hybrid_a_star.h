@@ -40,7 +40,7 @@ struct CarPathParams {
 /// robot's centre on the grid, or the search ended or has met its bound.
 /// @param footprint  Convex, padded, in the base frame [m].
 /// @param min_turning_radius  [m] > 0
-CarPathResult PlanCarPath(const Costmap& costmap, const geometry::Polygon& footprint,
+CarPathResult PlanCarPath(const Costmap& costmap, const Footprint& footprint,
                           const geometry::Pose2& X_MStart, const geometry::Pose2& X_MGoal,
                           double min_turning_radius, const CarPathParams& params = {});
 

@@ -56,6 +56,7 @@ struct DrivingContext {
   std::shared_ptr<const navigation::Costmap> costmap;
   std::shared_ptr<const robot::Robot> robot;
   geometry::Polygon footprint;  ///< padded; of the posture for driving
+  navigation::Footprint body;   ///< that, and what of it is at the heights of the costmap's layers
   geometry::Polygon base;       ///< outline of what drives, without arms: robot::BaseOutlineOf
   MoveBaseParams params;
   std::vector<MarginMap> with_margin;  ///< the widest first; none: nothing but the map's own
@@ -69,12 +70,13 @@ struct DrivingContext {
 struct NarrowPlace;
 
 /// The footprint of a robot that does not have its arms where they are for driving: the padded
-/// footprint, and what sticks out of it in this posture, padded as well. A body of one height, as
-/// the costmap is.
+/// footprint, and what sticks out of it in this posture, padded as well. It counts at all
+/// heights.
 geometry::Polygon FootprintOf(const DrivingContext& context, const robot::JointPositions& measured);
 
 /// A costmap of everything that stands between the lowest obstacle that matters and the robot's
-/// top.
+/// top. Where the footprint is that of the model's shapes and no arm moves, what stands at heights
+/// at which the robot is narrower is in layers of it, in the way of no more than that.
 /// @throws base::ConfigError for a robot without a base laser where local control asks for one.
 DrivingContext MakeDrivingContext(const world::World& world, const robot::Robot& robot,
                                   const MoveBaseParams& params);
@@ -116,6 +118,7 @@ class MoveBase : public Skill {
       const std::shared_ptr<const navigation::Costmap>& map, const robot::Observation& observation,
       const LocalCostmap* seen = nullptr) const;
   bool PlanWithMargin(const robot::Observation& observation);
+  navigation::Footprint Body() const;
   navigation::Costmap MapWithMarks(const robot::Observation& observation) const;
   void Look(const robot::Observation& observation);
   Status Recover(const robot::Observation& observation);
@@ -131,6 +134,7 @@ class MoveBase : public Skill {
   LostWatch lost_;
   bool has_begun_{false};
   std::shared_ptr<const std::vector<geometry::Pose2>> path_;  // null: not planned yet
+  std::vector<MarginMap> with_margins_;                       // of this drive, the widest first
   std::size_t first_margin_{0};  // of those with which ways are looked for
   /// By which it was planned with a margin; null: without.
   std::shared_ptr<const navigation::Costmap> with_margin_;

@@ -35,6 +35,7 @@ struct NamedOutline {
   std::string name;
   std::string source;  ///< "hall.world:12", or empty
   geometry::Polygon outline_M;
+  double lower{0.0}, upper{0.0};  ///< [m] heights between which all of the shape lies
 };
 /// Outlines of all static bodies as above.
 std::vector<NamedOutline> NamedOutlinesInBand(const World& world, double z_min, double z_max);

@@ -7,6 +7,7 @@
 #include "hires/geometry/angles.h"
 #include "hires/robot/echoes.h"
 #include "hires/robot/link_bounds.h"
+#include "skills/driving/by_height.h"
 #include "skills/driving/way_blocked.h"
 #include "skills/posture_skills.h"
 
@@ -37,7 +38,7 @@ double MapMargin(const world::World& world) {
 
 /// Follows what a car's planner found, as the local planner of other robots is set up.
 std::optional<navigation::CarFollower> MakeFollower(const DrivingContext& context,
-                                                    const geometry::Polygon& footprint,
+                                                    const navigation::Footprint& footprint,
                                                     const robot::MotionSet& motion_set) {
   const robot::BaseControllerParams& base = context.robot->profile.base_controller;
   if (base.drive != robot::Drive::kCarLike) return std::nullopt;
@@ -69,16 +70,45 @@ double Outwards(double coordinate, double padding) {
 /// errs by a hand's breadth would else let it stand in a wall for good; move_base's costmaps clear
 /// the footprint for the same reason. A robot whose centre lies in an obstacle is lost instead.
 std::optional<navigation::Costmap> WithRoom(const navigation::Costmap& map, const Pose2& X_MB,
-                                            const geometry::Polygon& footprint) {
-  const geometry::Polygon outline_M = geometry::Transformed(X_MB, footprint);
+                                            const navigation::Footprint& footprint) {
+  const navigation::Footprint footprint_M = Transformed(X_MB, footprint);
   int column = 0, row = 0;
   map.CellOf(X_MB.position(), &column, &row);
   const bool is_in_it = map.Inside(column, row) && map.cost(column, row) < navigation::kLethalCost;
-  if (!is_in_it || map.CostBelow(outline_M) < navigation::kLethalCost) return std::nullopt;
-  return map.WithRoomFor(outline_M);
+  if (!is_in_it || map.CostBelow(footprint_M) < navigation::kLethalCost) return std::nullopt;
+  return map.WithRoomFor(footprint_M);
 }
 
-DrivingContext ContextOf(const world::OccupancyGrid& map, const robot::Robot& robot,
+/// Centres keep so far from what is in a layer that the robot may head anywhere. Where it stands,
+/// and at its goal, it heads somewhere: a mast may be nearer to a counter's edge than that.
+std::optional<navigation::Costmap> WithPlaces(const navigation::Costmap& map,
+                                              const navigation::Footprint& footprint,
+                                              const std::vector<Pose2>& places) {
+  std::optional<navigation::Costmap> eased;
+  if (!map.has_layers()) return eased;
+  for (const Pose2& X_MB : places) {
+    const geometry::Polygon outline_M = geometry::Transformed(X_MB, footprint.outline);
+    if (map.FootprintCost(footprint, X_MB) < navigation::kLethalCost)
+      eased = (eased ? *eased : map).WithAccessUnder(outline_M);
+  }
+  return eased;
+}
+
+/// The same map for ways that keep more or less of a margin from everything, the widest first.
+std::vector<MarginMap> WithMargins(const navigation::Costmap& map, double inscribed_radius,
+                                   const MoveBaseParams& params) {
+  std::vector<MarginMap> margins;
+  if (params.obstacle_layer || params.place_margin == 0.0) return margins;
+  for (const double share : {1.0, 0.5}) {
+    const double margin = share * params.place_margin;
+    const double radius = inscribed_radius + margin + params.map_resolution;
+    margins.push_back(
+        {margin, std::make_shared<const navigation::Costmap>(map.WithInscribedRadius(radius))});
+  }
+  return margins;
+}
+
+DrivingContext ContextOf(const SlicedByHeight& world, const robot::Robot& robot,
                          const MoveBaseParams& params) {
   const geometry::Polygon footprint =
       geometry::Padded(robot.profile.footprint, robot.profile.footprint_padding);
@@ -87,19 +117,15 @@ DrivingContext ContextOf(const world::OccupancyGrid& map, const robot::Robot& ro
     possible.local.max_lateral_velocity = 0.0;
   }
   DrivingContext context;
+  const double radius = geometry::InscribedRadius(footprint);
   context.costmap = std::make_shared<const navigation::Costmap>(
-      map, geometry::InscribedRadius(footprint), params.costmap);
+      Layered({world.whole, radius, params.costmap}, world.layers, robot));
   context.robot = std::make_shared<const robot::Robot>(robot);
   context.footprint = footprint;
+  context.body = BodyOf(footprint, world.layers, robot);
   if (params.obstacle_layer || params.seen_place) context.base = robot::BaseOutlineOf(robot);
   context.params = possible;
-  if (params.obstacle_layer || params.place_margin == 0.0) return context;
-  for (const double share : {1.0, 0.5}) {
-    const double margin = share * params.place_margin;
-    const double radius = geometry::InscribedRadius(footprint) + margin + params.map_resolution;
-    context.with_margin.push_back({margin, std::make_shared<const navigation::Costmap>(
-                                               context.costmap->WithInscribedRadius(radius))});
-  }
+  context.with_margin = WithMargins(*context.costmap, radius, params);
   return context;
 }
 
@@ -111,20 +137,21 @@ double LaserPlane(const robot::Robot& robot) {
       "`obstacle_layer: none` in the scene");
 }
 
-/// @param seen  has what is in the laser's plane, `map` everything, in the same cells.
-MapByPlane ByPlane(const world::OccupancyGrid& seen, const world::OccupancyGrid& map,
+/// @param seen  has what is in the laser's plane, `world` everything, in the same cells.
+MapByPlane ByPlane(const world::OccupancyGrid& seen, const SlicedByHeight& world,
                    const DrivingContext& context) {
   MapByPlane by_plane;
-  world::OccupancyGrid beyond = map;
+  world::OccupancyGrid beyond = world.whole;
   for (int row = 0; row < seen.height; ++row) {
     for (int column = 0; column < seen.width; ++column) {
       if (seen.at(column, row) != world::Cell::kOccupied) continue;
       by_plane.in_plane_M.push_back(seen.CentreOf(column, row));
-      beyond.cells[static_cast<std::size_t>(row) * map.width + column] = world::Cell::kFree;
+      beyond.cells[static_cast<std::size_t>(row) * beyond.width + column] = world::Cell::kFree;
     }
   }
+  const double radius = geometry::InscribedRadius(context.footprint);
   by_plane.beyond = std::make_shared<const navigation::Costmap>(
-      beyond, geometry::InscribedRadius(context.footprint), context.params.costmap);
+      Layered({beyond, radius, context.params.costmap}, world.layers, *context.robot));
   return by_plane;
 }
 
@@ -132,19 +159,20 @@ MapByPlane ByPlane(const world::OccupancyGrid& seen, const world::OccupancyGrid&
 
 DrivingContext MakeDrivingContext(const world::OccupancyGrid& map, const robot::Robot& robot,
                                   const MoveBaseParams& params) {
-  DrivingContext context = ContextOf(map, robot, params);
-  if (params.obstacle_layer) context.by_plane = ByPlane(map, map, context);
+  const SlicedByHeight of_no_height{map, {}};
+  DrivingContext context = ContextOf(of_no_height, robot, params);
+  if (params.obstacle_layer) context.by_plane = ByPlane(map, of_no_height, context);
   return context;
 }
 
 DrivingContext MakeDrivingContext(const world::World& world, const robot::Robot& robot,
                                   const MoveBaseParams& params) {
   const double margin = MapMargin(world);
-  const world::OccupancyGrid map = world::SliceWorld(
-      world, params.min_obstacle_height, RobotHeight(robot), params.map_resolution, margin);
+  const Band heights{params.min_obstacle_height, RobotHeight(robot)};
+  const SlicedByHeight map = SliceByHeight(world, robot, heights, params.map_resolution, margin);
   DrivingContext context = ContextOf(map, robot, params);
   context.obstacles = std::make_shared<const std::vector<world::NamedOutline>>(
-      world::NamedOutlinesInBand(world, params.min_obstacle_height, RobotHeight(robot)));
+      world::NamedOutlinesInBand(world, heights.first, heights.second));
   if (!params.obstacle_layer && !params.seen_place) return context;
   const double plane = LaserPlane(robot);
   if (params.obstacle_layer) {
@@ -182,9 +210,10 @@ MoveBase::MoveBase(std::shared_ptr<const DrivingContext> context, const Pose2& X
       motion_set_(motion_set),
       costmap_(context_->costmap),
       footprint_(context_->footprint),
-      local_(context_->params.local, footprint_),
-      car_(MakeFollower(*context_, footprint_, motion_set)),
-      lost_(context_->params.lost) {
+      local_(context_->params.local, context_->body),
+      car_(MakeFollower(*context_, context_->body, motion_set)),
+      lost_(context_->params.lost),
+      with_margins_(context_->with_margin) {
   local_.SetMotionSet(motion_set);
   if (context_->by_plane) {
     sensed_.emplace(&*context_->by_plane, *context_->params.obstacle_layer, footprint_,
@@ -214,9 +243,15 @@ void MoveBase::Begin(const robot::Observation& observation) {
                                           X_MGoal_, context_->params.planner);
     if (way.status != navigation::PathStatus::kFound) continue;
     if (sensed_) sensed_->SetInscribedRadius(radius);
+    with_margins_ = WithMargins(*costmap_, radius, context_->params);
     return;
   }
   costmap_ = context_->costmap;
+}
+
+/// What sticks out of the footprint counts at all heights, and then the whole of it.
+navigation::Footprint MoveBase::Body() const {
+  return footprint_ == context_->footprint ? context_->body : navigation::Footprint(footprint_);
 }
 
 navigation::PathStatus MoveBase::FindPath(const navigation::Costmap& costmap, const Pose2& X_MB,
@@ -232,7 +267,7 @@ navigation::PathStatus MoveBase::FindPath(const navigation::Costmap& costmap, co
   navigation::CarPathParams params;
   params.costs = context_->params.planner;
   auto found =
-      navigation::PlanCarPath(costmap, geometry::Padded(footprint_, margin), X_MB, X_MGoal_,
+      navigation::PlanCarPath(costmap, Padded(Body(), margin), X_MB, X_MGoal_,
                               context_->robot->profile.base_controller.min_turning_radius, params);
   if (found.status != navigation::PathStatus::kFound) return found.status;
   std::vector<Pose2> poses;
@@ -251,15 +286,14 @@ navigation::PathResult MoveBase::FindWayThatIsWide(const navigation::Costmap& co
   auto found = navigation::PlanPath(costmap, X_MB, X_MGoal_, planner);
   narrow_.reset();
   if (found.status != navigation::PathStatus::kFound) return found;
-  auto narrow = FindTooNarrow(costmap, footprint_, found.path);
+  auto narrow = FindTooNarrow(costmap, Body(), found.path);
   if (!narrow) return found;
   narrow_ = std::make_shared<const NarrowPlace>(*narrow);
   double half_width = 0.0;
   for (const Eigen::Vector2d& p : footprint_) half_width = std::max(half_width, std::abs(p.y()));
   auto roomy =
       navigation::PlanPath(costmap.WithInscribedRadius(half_width), X_MB, X_MGoal_, planner);
-  if (roomy.status == navigation::PathStatus::kFound &&
-      !FindTooNarrow(costmap, footprint_, roomy.path))
+  if (roomy.status == navigation::PathStatus::kFound && !FindTooNarrow(costmap, Body(), roomy.path))
     return roomy;
   navigation::Costmap closed = costmap;
   for (int i = 0; narrow && i < kMostPassages; ++i) {
@@ -269,7 +303,7 @@ navigation::PathResult MoveBase::FindWayThatIsWide(const navigation::Costmap& co
       found.status = navigation::PathStatus::kNoPath;
       return found;
     }
-    narrow = FindTooNarrow(costmap, footprint_, found.path);
+    narrow = FindTooNarrow(costmap, Body(), found.path);
   }
   return found;
 }
@@ -284,9 +318,8 @@ navigation::Costmap MoveBase::MapWithMarks(const robot::Observation& observation
 bool MoveBase::PlanWithMargin(const robot::Observation& observation) {
   with_margin_.reset();
   local_.SetMargin(0.0);
-  if (footprint_ != context_->footprint) return false;  // its arms have a map of their own
-  for (std::size_t i = first_margin_; i < context_->with_margin.size(); ++i) {
-    const MarginMap& map = context_->with_margin[i];
+  for (std::size_t i = first_margin_; i < with_margins_.size(); ++i) {
+    const MarginMap& map = with_margins_[i];
     auto open = std::make_shared<const navigation::Costmap>(
         map.costmap->WithAccessTo(geometry::Transformed(observation.X_MB, footprint_))
             .WithAccessTo(geometry::Transformed(X_MGoal_, footprint_)));
@@ -384,22 +417,24 @@ Status MoveBase::Recover(const robot::Observation& observation) {
   return {};
 }
 
-/// A map as it must be now: with what is seen, and free where the robot stands. What is seen below
-/// its arms stays: it may be driven into.
+/// A map as it must be now: with what is seen, and open where the robot stands and shall stand.
+/// What is seen below its arms stays: it may be driven into.
 /// @param seen  whose marks the map has; null: it has none.
 std::shared_ptr<const navigation::Costmap> MoveBase::Completed(
     const std::shared_ptr<const navigation::Costmap>& map, const robot::Observation& observation,
     const LocalCostmap* seen) const {
-  std::optional<navigation::Costmap> now = WithRoom(*map, observation.X_MB, footprint_);
+  std::optional<navigation::Costmap> now = WithRoom(*map, observation.X_MB, Body());
   const bool has_arms_out = footprint_ != context_->footprint;
   const bool is_seen_below = now && seen && has_arms_out;
   if (is_seen_below) now = now->WithObstaclesAt(seen->Marks(observation));
   if (!observation.obstacles_M.empty())
     now = (now ? *now : *map).WithObstacles(observation.obstacles_M);
   if (is_seen_below || !observation.obstacles_M.empty()) {
-    auto roomier = WithRoom(*now, observation.X_MB, context_->footprint);
+    auto roomier = WithRoom(*now, observation.X_MB, context_->body);
     if (roomier) now = std::move(roomier);
   }
+  auto open = WithPlaces(now ? *now : *map, Body(), {observation.X_MB, X_MGoal_});
+  if (open) now = std::move(open);
   if (!now) return map;
   return std::make_shared<const navigation::Costmap>(std::move(*now));
 }

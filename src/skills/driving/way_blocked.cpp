@@ -10,6 +10,7 @@
 
 #include "hires/geometry/angles.h"
 #include "hires/robot/link_bounds.h"
+#include "skills/driving/by_height.h"
 
 namespace hires::skills {
 namespace {
@@ -26,18 +27,24 @@ constexpr double kFarthestSide = 5.0;      // [m] to either side; what is wider 
 constexpr double kFarthestObstacle = 2.0;  // [m] from a place that it blocks
 
 double WidthOf(const geometry::Polygon& footprint) {
-  double lowest = 0.0, highest = 0.0;
-  for (const Eigen::Vector2d& p : footprint) {
-    lowest = std::min(lowest, p.y());
-    highest = std::max(highest, p.y());
-  }
-  return highest - lowest;
+  const auto [lowest, highest] =
+      std::minmax_element(footprint.begin(), footprint.end(),
+                          [](const auto& a, const auto& b) { return a.y() < b.y(); });
+  return highest->y() - lowest->y();
+}
+
+/// Whether a cell is no room for anything of a base; or for something of it.
+bool IsSolid(const Costmap& costmap, int column, int row) {
+  return costmap.cost(column, row) >= navigation::kLethalCost;
+}
+bool IsTaken(const Costmap& costmap, int column, int row) {
+  return IsSolid(costmap, column, row) || costmap.HasObstacle(column, row);
 }
 
 bool IsObstacle(const Costmap& costmap, const Eigen::Vector2d& p_M) {
   int column = 0, row = 0;
   costmap.CellOf(p_M, &column, &row);
-  return !costmap.Inside(column, row) || costmap.cost(column, row) >= navigation::kLethalCost;
+  return !costmap.Inside(column, row) || IsSolid(costmap, column, row);
 }
 
 /// [m] from a point in a direction to where an obstacle's cell begins.
@@ -50,10 +57,20 @@ double FreeTowards(const Costmap& costmap, const Eigen::Vector2d& p_M,
 }
 
 /// A footprint that is smaller by what lies between two places or headings that are tried.
-geometry::Polygon Shrunk(const geometry::Polygon& footprint) {
-  const double radius = geometry::CircumscribedRadius(footprint);
-  geometry::Polygon shrunk = footprint;
-  for (Eigen::Vector2d& p : shrunk) p *= std::max(0.0, 1.0 - kSlack / radius);
+navigation::Footprint Shrunk(const navigation::Footprint& footprint) {
+  const auto shrink = [](const Eigen::Vector2d& middle, geometry::Polygon* outline) {
+    double radius = 0.0;
+    for (const Eigen::Vector2d& p : *outline) radius = std::max(radius, (p - middle).norm());
+    const double share = std::max(0.0, 1.0 - kSlack / radius);
+    for (Eigen::Vector2d& p : *outline) p = middle + share * (p - middle);
+  };
+  navigation::Footprint shrunk = footprint;
+  shrink(Eigen::Vector2d::Zero(), &shrunk.outline);
+  for (geometry::Polygon& part : shrunk.by_layer) {
+    Eigen::Vector2d middle = Eigen::Vector2d::Zero();
+    for (const Eigen::Vector2d& p : part) middle += p / static_cast<double>(part.size());
+    shrink(middle, &part);
+  }
   return shrunk;
 }
 
@@ -78,6 +95,19 @@ Cut NarrowestCut(const Costmap& costmap, const Eigen::Vector2d& p_M, double yaw)
   return narrowest;
 }
 
+/// In the map or in one of its layers in which the footprint touches something.
+Cut NarrowestCut(const Costmap& costmap, const navigation::Footprint& footprint,
+                 const Pose2& X_MB) {
+  Cut narrowest = NarrowestCut(costmap, X_MB.position(), X_MB.yaw);
+  for (std::size_t i = 0; i < costmap.layers().size(); ++i) {
+    const Costmap& layer = *costmap.layers()[i];
+    if (layer.FootprintCost(footprint.AtLayer(i), X_MB) < navigation::kLethalCost) continue;
+    const Cut cut = NarrowestCut(layer, X_MB.position(), X_MB.yaw);
+    if (cut.width() < narrowest.width()) narrowest = cut;
+  }
+  return narrowest;
+}
+
 /// Whether the path goes straight on through a cut: at a bend a base may turn as it passes.
 bool GoesStraight(const std::vector<Pose2>& path, std::size_t at, double yaw) {
   constexpr double kChord = 0.6;     // [m]
@@ -94,7 +124,8 @@ bool GoesStraight(const std::vector<Pose2>& path, std::size_t at, double yaw) {
 
 /// Whether it drives straight on through a place, a little before and behind it, too: a base does
 /// not wind itself through.
-bool DrivesThrough(const Costmap& costmap, const geometry::Polygon& footprint, const Pose2& X_MB) {
+bool DrivesThrough(const Costmap& costmap, const navigation::Footprint& footprint,
+                   const Pose2& X_MB) {
   for (double way = 0.0; way <= kStraightWay; way += costmap.resolution()) {
     for (const double x : {way, -way}) {
       if (costmap.FootprintCost(footprint, X_MB * Pose2{x, 0.0, 0.0}) >= navigation::kLethalCost)
@@ -104,8 +135,8 @@ bool DrivesThrough(const Costmap& costmap, const geometry::Polygon& footprint, c
   return true;
 }
 
-bool FitsAt(const Costmap& costmap, const geometry::Polygon& footprint, const Eigen::Vector2d& p_M,
-            double yaw) {
+bool FitsAt(const Costmap& costmap, const navigation::Footprint& footprint,
+            const Eigen::Vector2d& p_M, double yaw) {
   for (double off = 0.0; off <= kDrivenHeading; off += kHeadingStep) {
     for (const double heading : {yaw + off, yaw - off}) {
       if (DrivesThrough(costmap, footprint, {p_M.x(), p_M.y(), heading})) return true;
@@ -115,7 +146,7 @@ bool FitsAt(const Costmap& costmap, const geometry::Polygon& footprint, const Ei
 }
 
 /// Places across the way, from its middle outwards.
-bool FitsAcross(const Costmap& costmap, const geometry::Polygon& footprint,
+bool FitsAcross(const Costmap& costmap, const navigation::Footprint& footprint,
                 const Eigen::Vector2d& middle, const Cut& cut) {
   const double step = costmap.resolution() / kPlaceSteps;
   for (double y = 0.0; y <= 0.5 * cut.width(); y += step) {
@@ -138,6 +169,18 @@ class Explainer {
     return costmap_.Inside(column, row) && costmap_.cost(column, row) == navigation::kUnknownCost;
   }
 
+  /// @pre inside the map
+  bool IsTakenAt(const Eigen::Vector2d& p_M) const {
+    int column = 0, row = 0;
+    costmap_.CellOf(p_M, &column, &row);
+    return IsTaken(costmap_, column, row);
+  }
+
+  /// Whether what is there is in the way of no more than a part of the base. @pre inside the map
+  bool IsInLayer(const Eigen::Vector2d& p_M) const {
+    return IsTakenAt(p_M) && !IsObstacle(costmap_, p_M);
+  }
+
   bool IsOutside(const Eigen::Vector2d& p_M) const {
     int column = 0, row = 0;
     costmap_.CellOf(p_M, &column, &row);
@@ -153,7 +196,7 @@ class Explainer {
     double least = std::numeric_limits<double>::infinity();
     for (int y = row - reach; y <= row + reach; ++y) {
       for (int x = column - reach; x <= column + reach; ++x) {
-        if (!costmap_.Inside(x, y) || costmap_.cost(x, y) < navigation::kLethalCost) continue;
+        if (!costmap_.Inside(x, y) || !IsTaken(costmap_, x, y)) continue;
         const double distance = (costmap_.CentreOf(x, y) - p_M).squaredNorm();
         if (distance >= least) continue;
         least = distance;
@@ -166,22 +209,33 @@ class Explainer {
   /// "'wall::c0'", "unmapped ground", "a wall of the map": what has the cell there.
   std::string WhatIsAt(const Eigen::Vector2d& cell_M) const {
     if (IsUnknown(cell_M)) return "unmapped (unknown) ground";
-    const double half = 0.5 * costmap_.resolution();
-    const geometry::Polygon cell{
-        cell_M + Eigen::Vector2d(-half, -half), cell_M + Eigen::Vector2d(half, -half),
-        cell_M + Eigen::Vector2d(half, half), cell_M + Eigen::Vector2d(-half, half)};
     if (!context_.obstacles) return "a wall of the map";
-    const world::NamedOutline* nearest = nullptr;
-    double least = costmap_.resolution();
-    for (const world::NamedOutline& obstacle : *context_.obstacles) {
-      const double distance = geometry::Distance(obstacle.outline_M, cell);
-      if (distance > least || (nearest != nullptr && distance == least)) continue;
-      nearest = &obstacle;
-      least = distance;
-    }
+    const world::NamedOutline* nearest = NearestTo(cell_M);
     if (nearest == nullptr) return "a thing that stands about";
     const std::string source = nearest->source.empty() ? "" : " (" + nearest->source + ")";
     return fmt::format("'{}'{}", nearest->name, source);
+  }
+
+  /// ": 'top' is 0.70 m to 0.75 m up, where the robot is 0.12 m wide, and its footprint counts at
+  /// all heights": where the shapes of the robot at these heights are narrower than its footprint,
+  /// and nothing else has the cell there; else empty.
+  std::string HeightText(const Eigen::Vector2d& cell_M) const {
+    const world::NamedOutline* there = context_.obstacles ? NearestTo(cell_M) : nullptr;
+    if (there == nullptr) return "";
+    Band heights{there->lower, there->upper};
+    for (const world::NamedOutline& other : *context_.obstacles) {
+      if (geometry::Distance(other.outline_M, CellAt(cell_M)) > 0.0) continue;
+      heights = {std::min(heights.first, other.lower), std::max(heights.second, other.upper)};
+    }
+    const auto part = ShapesWithin(*context_.robot,
+                                   {heights.first - kHeightSlack, heights.second + kHeightSlack});
+    const bool is_wide =
+        part && geometry::CircumscribedRadius(*part) >= 0.5 * NeededWidth() && !IsInLayer(cell_M);
+    if (is_wide) return "";
+    return fmt::format("; '{}' is {:.2f} m to {:.2f} m up, where the robot is {}{}", there->name,
+                       heights.first, heights.second,
+                       part ? fmt::format("{:.2f} m wide", WidthOf(*part)) : "not",
+                       IsInLayer(cell_M) ? "" : ", but its footprint counts at all heights");
   }
 
   /// [m] of free room through a place, in the direction of what is nearest; none: it is wide.
@@ -208,6 +262,26 @@ class Explainer {
   }
 
  private:
+  geometry::Polygon CellAt(const Eigen::Vector2d& cell_M) const {
+    const double half = 0.5 * costmap_.resolution();
+    return {cell_M + Eigen::Vector2d(-half, -half), cell_M + Eigen::Vector2d(half, -half),
+            cell_M + Eigen::Vector2d(half, half), cell_M + Eigen::Vector2d(-half, half)};
+  }
+
+  /// What has a cell, of several the first; or null. @pre there are named obstacles
+  const world::NamedOutline* NearestTo(const Eigen::Vector2d& cell_M) const {
+    const geometry::Polygon cell = CellAt(cell_M);
+    const world::NamedOutline* nearest = nullptr;
+    double least = costmap_.resolution();
+    for (const world::NamedOutline& obstacle : *context_.obstacles) {
+      const double distance = geometry::Distance(obstacle.outline_M, cell);
+      if (distance > least || (nearest != nullptr && distance == least)) continue;
+      nearest = &obstacle;
+      least = distance;
+    }
+    return nearest;
+  }
+
   const DrivingContext& context_;
   const Costmap& costmap_;
 };
@@ -247,9 +321,9 @@ class Intrusion {
   }
   double CostOf(int column, int row) const {
     const std::uint8_t cost = costmap_.cost(column, row);
-    return cost >= navigation::kLethalCost      ? kSolid
-           : cost >= navigation::kInscribedCost ? kNarrow
-                                                : 1.0;
+    return cost < navigation::kInscribedCost ? 1.0
+           : IsTaken(costmap_, column, row)  ? kSolid
+                                             : kNarrow;
   }
   void Expand() {
     const auto [cost, cell] = open_.top();
@@ -284,20 +358,22 @@ std::uint8_t CostAt(const Costmap& costmap, const Eigen::Vector2d& p_M) {
 
 }  // namespace
 
-std::optional<NarrowPlace> FindTooNarrow(const Costmap& costmap, const geometry::Polygon& footprint,
+std::optional<NarrowPlace> FindTooNarrow(const Costmap& costmap,
+                                         const navigation::Footprint& footprint,
                                          const std::vector<Pose2>& path) {
-  const double reach = geometry::CircumscribedRadius(footprint);
-  const geometry::Polygon shrunk = Shrunk(footprint);
+  const double reach = geometry::CircumscribedRadius(footprint.outline);
+  const navigation::Footprint shrunk = Shrunk(footprint);
   for (std::size_t i = 0; i < path.size(); ++i) {
     const Pose2& pose = path[i];
     const bool is_at_end = (pose.position() - path.front().position()).norm() <= reach ||
                            (pose.position() - path.back().position()).norm() <= reach;
     if (is_at_end || costmap.FootprintCost(shrunk, pose) < navigation::kLethalCost) continue;
-    const Cut cut = NarrowestCut(costmap, pose.position(), pose.yaw);
+    const Cut cut = NarrowestCut(costmap, shrunk, pose);
     if (cut.width() >= 2.0 * reach || !GoesStraight(path, i, cut.yaw())) continue;
     const Eigen::Vector2d middle = pose.position() + 0.5 * (cut.to_left - cut.to_right) * cut.left;
     if (FitsAcross(costmap, shrunk, middle, cut)) continue;
-    return NarrowPlace{{middle.x(), middle.y(), cut.yaw()}, cut.width(), WidthOf(footprint)};
+    return NarrowPlace{
+        {middle.x(), middle.y(), cut.yaw()}, cut.width(), WidthOf(footprint.outline)};
   }
   return std::nullopt;
 }
@@ -330,18 +406,21 @@ std::string WhyBlocked(const DrivingContext& context, const Costmap& costmap,
   const auto nearest = explainer.NearestObstacle(p_M);
   if (!nearest) return fmt::format("{} is not free", where);
   const std::string what = explainer.WhatIsAt(*nearest);
+  const std::string heights = explainer.HeightText(*nearest);
   const double distance = (*nearest - p_M).norm();
   if (distance <= costmap.resolution())
-    return fmt::format("{} lies in {}; choose another place, or move it", where, what);
+    return fmt::format("{} lies in {}; choose another place, or move it{}", where, what, heights);
+  if (explainer.IsInLayer(*nearest))
+    return fmt::format("{} is {:.2f} m from {}{}", where, distance, what, heights);
   const double needed = explainer.NeededWidth();
   const auto width = explainer.WidthAt(p_M, *nearest);
   if (width && *width < needed) {
-    return fmt::format("{} is too narrow, {:.2f} m wide beside {}; {}", where, *width, what,
-                       explainer.BaseText(needed));
+    return fmt::format("{} is too narrow, {:.2f} m wide beside {}; {}{}", where, *width, what,
+                       explainer.BaseText(needed), heights);
   }
-  return fmt::format("{} is {:.2f} m from {}, wanted at least {:.2f} m; {}", where,
+  return fmt::format("{} is {:.2f} m from {}, wanted at least {:.2f} m; {}{}", where,
                      std::max(0.0, distance - 0.5 * costmap.resolution()), what, 0.5 * needed,
-                     explainer.BaseText(needed));
+                     explainer.BaseText(needed), heights);
 }
 
 std::string WhyNoPath(const DrivingContext& context, const Costmap& costmap, const Pose2& X_MStart,
@@ -352,9 +431,9 @@ std::string WhyNoPath(const DrivingContext& context, const Costmap& costmap, con
   };
   const auto too_narrow = [&](const Eigen::Vector2d& p_M, double width, double needed) {
     const auto nearest = explainer.NearestObstacle(p_M);
-    return fmt::format("{}: it is {:.2f} m wide there{}; {}", ends_at(p_M), width,
+    return fmt::format("{}: it is {:.2f} m wide there{}; {}{}", ends_at(p_M), width,
                        nearest ? " beside " + explainer.WhatIsAt(*nearest) : "",
-                       explainer.BaseText(needed));
+                       explainer.BaseText(needed), nearest ? explainer.HeightText(*nearest) : "");
   };
   if (narrow) return too_narrow(narrow->X_MW.position(), narrow->width, narrow->footprint_width);
   const std::vector<Eigen::Vector2d> cells = Intrusion(costmap).Find(X_MStart, X_MGoal);
@@ -368,11 +447,12 @@ std::string WhyNoPath(const DrivingContext& context, const Costmap& costmap, con
   }
   const Eigen::Vector2d end = last == cells.begin() ? *last : *(last - 1);
   const auto beyond = std::find_if(last, cells.end(), is_room);
-  const auto solid = std::find_if(last, beyond, [&](const Eigen::Vector2d& p_M) {
-    return CostAt(costmap, p_M) >= navigation::kLethalCost;
-  });
-  if (solid != beyond)
-    return fmt::format("{}; beyond it is {}", ends_at(end), explainer.WhatIsAt(*solid));
+  const auto solid = std::find_if(
+      last, beyond, [&](const Eigen::Vector2d& p_M) { return explainer.IsTakenAt(p_M); });
+  if (solid != beyond) {
+    return fmt::format("{}; beyond it is {}{}", ends_at(end), explainer.WhatIsAt(*solid),
+                       explainer.HeightText(*solid));
+  }
   std::optional<double> least;
   Eigen::Vector2d narrowest = end;
   for (auto cell = last; cell != beyond; ++cell) {

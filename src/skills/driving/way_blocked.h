@@ -24,19 +24,20 @@ struct NarrowPlace {
 /// reach of both ends does not count: there a base may turn as it needs.
 /// @param footprint  convex, in the base frame, as local control has it.
 std::optional<NarrowPlace> FindTooNarrow(const navigation::Costmap& costmap,
-                                         const geometry::Polygon& footprint,
+                                         const navigation::Footprint& footprint,
                                          const std::vector<geometry::Pose2>& path);
 
 /// The same map with the passage closed.
 navigation::Costmap WithClosed(const navigation::Costmap& costmap, const NarrowPlace& place);
 
 /// What is wrong with a place to stand at: it lies outside of the map, is unmapped, an obstacle
-/// (which, how far), or too narrow (how wide it is, and the base).
+/// (which, how far), or too narrow (how wide it is, and the base). Where that stands only at
+/// heights at which the robot is narrower than its footprint, the heights and how wide it is there.
 /// @param place  "start", "goal".
 std::string WhyBlocked(const DrivingContext& context, const navigation::Costmap& costmap,
                        const std::string& place, const geometry::Pose2& X_MB);
 
-/// Where the way from start to goal ends, and by what.
+/// Where the way from start to goal ends, and by what; heights as above.
 /// @param narrow  where the footprint is too wide, if that is why; else null.
 std::string WhyNoPath(const DrivingContext& context, const navigation::Costmap& costmap,
                       const geometry::Pose2& X_MStart, const geometry::Pose2& X_MGoal,
