@@ -45,7 +45,6 @@ void FrozenRobot::AddBody(const Pose3& X_MB, const std::vector<geometry::Collisi
   body_ = physics_->AddDriven(shapes, X_MB);
   if (!shapes_B_) return;
   clearance_.emplace(shapes, scene_->world);
-  shapes_ = shapes;
 }
 
 void FrozenRobot::Move(const Pose3& X_MB, const Pose3& X_MBnext) {
@@ -56,12 +55,10 @@ std::optional<RobotContact> FrozenRobot::FindContact(const geometry::Pose2& X_MB
   if (!clearance_) return scene_->clearance.FindContact(X_MB);
   const auto contact = clearance_->FindContact(X_MB);
   if (!contact) return contact;
-  // A raised arm's prism reaches down to where the arm is not: look exactly.
-  const auto touch = physics_->FindFixedTouch(body_, kFloorBody);
-  if (!touch) return std::nullopt;
-  geometry::Collision part = shapes_[touch->shape];
-  part.X_BS = geometry::Lift(X_MB) * part.X_BS;
-  return ContactWith(part, scene_->world.statics[touch->fixed - kFloorBody - 1], scene_->world);
+  // A raised arm's prism reaches down to where the arm is not: look exactly. Physics answers for
+  // what touches nothing, quickly; wheels touch a slab that bears them.
+  if (!physics_->FindFixedTouch(body_, kFloorBody)) return std::nullopt;
+  return clearance_->FindExactContact(X_MB);
 }
 
 }  // namespace hires::simulation

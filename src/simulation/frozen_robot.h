@@ -36,7 +36,6 @@ class FrozenRobot {
   // Where the posture is not the driving one, whose shapes and clearance the scene has:
   std::optional<std::vector<geometry::Collision>> shapes_B_;
   std::optional<RobotClearance> clearance_;
-  std::vector<geometry::Collision> shapes_;  // of the body
   physics::PhysicsWorld* physics_{nullptr};
   physics::BodyId body_{0};
 };

@@ -44,8 +44,11 @@ class RobotClearance {
   /// @param robot_B  collision shapes in the base frame.
   RobotClearance(const std::vector<geometry::Collision>& robot_B, const world::World& world);
 
-  /// The first contact in the order of the shapes, or nothing.
+  /// The first contact in the order of the shapes, or nothing; a shape that is no mesh fills the
+  /// prism round it.
   std::optional<RobotContact> FindContact(const geometry::Pose2& X_MB) const;
+  /// Likewise, each shape as it is. Costs more.
+  std::optional<RobotContact> FindExactContact(const geometry::Pose2& X_MB) const;
 
   /// Horizontal distance from the robot's nearest part to the nearest body at its height [m], at
   /// most `limit`; 0 on contact. To and from meshes it is the distance in space.
@@ -66,6 +69,7 @@ class RobotClearance {
                                         const geometry::Collision& shape,
                                         const geometry::Pose3& X_WB);
   static bool IsExact(const Prism& part, const Prism& obstacle);
+  std::optional<RobotContact> ContactAt(const geometry::Pose2& X_MB, bool exactly) const;
   /// Calls visit(part, obstacle, distance) for all pairs of one height that may lie within `limit`.
   template <typename Visit>
   void ForNearPairs(const geometry::Pose2& X_MB, double limit, Visit visit) const;

@@ -175,15 +175,24 @@ void RobotClearance::ForNearPairs(const geometry::Pose2& X_MB, double limit, Vis
 }
 
 std::optional<RobotContact> RobotClearance::FindContact(const geometry::Pose2& X_MB) const {
+  return ContactAt(X_MB, false);
+}
+
+std::optional<RobotContact> RobotClearance::FindExactContact(const geometry::Pose2& X_MB) const {
+  return ContactAt(X_MB, true);
+}
+
+std::optional<RobotContact> RobotClearance::ContactAt(const geometry::Pose2& X_MB,
+                                                      bool exactly) const {
   std::optional<RobotContact> contact;
   const geometry::Pose3 X_MF = geometry::Lift(X_MB);
   ForNearPairs(X_MB, 0.0, [&](const Prism& part, const Prism& obstacle, double) {
-    if (!IsExact(part, obstacle) &&
-        !part.shape->Touches(X_MF * part.X_FS, *obstacle.shape, obstacle.X_FS)) {
+    const bool by_outline = !exactly && IsExact(part, obstacle);
+    if (!by_outline && !part.shape->Touches(X_MF * part.X_FS, *obstacle.shape, obstacle.X_FS)) {
       return true;
     }
     contact = RobotContact{part.name, obstacle.name, {}, obstacle.source};
-    if (IsExact(part, obstacle)) {
+    if (by_outline) {
       contact->p_M = MiddleOfBoth(geometry::Transformed(X_MB, part.outline), obstacle.outline);
     } else {
       contact->p_M = part.shape->MeetingPoint(X_MF * part.X_FS, *obstacle.shape, obstacle.X_FS)
