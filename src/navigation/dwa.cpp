@@ -383,8 +383,11 @@ DwaResult DwaPlanner::Impl::AtGoal(const Costmap& costmap, const geometry::Pose2
   ++num_missed_;
   LeaveGoal();  // it came to rest too far off after all
   if (num_missed_ > 1 || !CanMoveSideways() || !IsBrisk()) {
-    approach_.BeginFrom(X_MB, X_MGoal_);
-    if (const auto result = CloseIn(costmap, X_MB, V_B)) return *result;
+    // Where something is in its way it tries once more with less room, down to none.
+    for (std::size_t room = num_blocked_; room < sweeps_.size(); ++room) {
+      approach_.BeginFrom(X_MB, X_MGoal_);
+      if (const auto result = CloseIn(costmap, X_MB, V_B)) return *result;
+    }
   }
   return Drive(costmap, X_MB, V_B);
 }
@@ -427,7 +430,7 @@ DwaResult DwaPlanner::Impl::Turn(const Costmap& costmap, const geometry::Pose2& 
   turn_sign_ = *turn < 0.0 ? -1 : 1;
   const double change = limits_.max_angular_acceleration * params_.control_period;
   geometry::Twist2 velocity = Braked(V_B, limits_, params_.control_period);
-  if (CanMoveSideways()) {
+  if (CanMoveSideways() && IsBrisk()) {
     velocity.wz = Approach(V_B.wz, turn_sign_ * TurningSpeed(std::abs(*turn)), change);
   } else {
     velocity.wz = Ramped(turning_at_, V_B.wz, SpeedOfTurn(*turn, limits_), change);

@@ -17,7 +17,7 @@ using geometry::Twist2;
 
 constexpr double kNear = 3.0;              // times the goal's tolerance
 constexpr double kPatience = 2.0;          // [s]
-constexpr double kCloser = 0.01;           // [m] what counts as progress
+constexpr double kCloser = 0.05;           // [m] what counts as progress, within that time
 constexpr double kTurnWeight = 0.1;        // [m/rad] of turns towards the goal
 constexpr double kReached = 0.01;          // [m] before the place, or beyond it
 constexpr double kAimed = 0.03;            // [rad]

@@ -55,10 +55,29 @@ std::vector<CarPose> PathAlong(const Pose2& X_MStart, const std::vector<CarArc>&
   return path;
 }
 
+/// In which order a search looks at ways. From the goal, a narrow end is where it begins.
+struct SearchKind {
+  bool is_from_goal;
+  double haste;  // the weight of estimates: above 1 a way is found sooner, and may cost more
+  double backward_factor;
+  int max_expansions;
+};
+
+/// Each finds most of the ways on which the others spend all their expansions: from room to room,
+/// who may not turn about in the first one has to drive backward all the way, and so on.
+std::array<SearchKind, 4> KindsOf(const CarPathParams& params) {
+  return {{{false, 1.0, params.backward_factor, params.max_expansions},
+           {false, params.haste, 1.0, params.max_expansions},
+           {true, params.haste, 1.0, params.max_expansions},
+           {false, params.haste, params.backward_factor, params.max_last_expansions}}};
+}
+
+/// Goal and start are those of the search: one from the goal begins there.
 class CarSearch {
  public:
   CarSearch(const Costmap& costmap, Footprint footprint, const Pose2& X_MGoal, double radius,
-            const CarPathParams& params, const CentreDistances& distances)
+            const CarPathParams& params, const CentreDistances& distances,
+            const SearchKind& kind)
       : costmap_(costmap),
         footprint_(std::move(footprint)),
         X_MGoal_(X_MGoal),
@@ -67,12 +86,13 @@ class CarSearch {
         step_(std::max(kLeastStep, radius * HeadingStep())),
         curvatures_{0.0, 0.5 / radius, -0.5 / radius, 1.0 / radius, -1.0 / radius},
         ways_(radius),
-        distances_(distances) {}
+        distances_(distances),
+        kind_(kind) {}
 
   /// @return the node at the goal.
   std::optional<int> Run(const Pose2& X_MStart) {
     Add({X_MStart, 0.0, -1, {}, false});
-    while (!open_.empty() && num_expansions_ < params_.max_expansions) {
+    while (!open_.empty() && num_expansions_ < kind_.max_expansions) {
       const int next = open_.top().node;
       open_.pop();
       if (nodes_[next].is_goal) return next;
@@ -86,17 +106,33 @@ class CarSearch {
     return costmap_.FootprintCost(footprint_, X_MB) < kLethalCost;
   }
 
-  std::vector<CarPose> PathTo(int goal) const {
+  /// From the drive's start to its goal.
+  std::vector<CarPose> PathTo(int end) const {
     std::vector<int> way;
-    for (int node = goal; node >= 0; node = nodes_[node].parent) way.push_back(node);
+    for (int node = end; node >= 0; node = nodes_[node].parent) way.push_back(node);
     std::vector<CarArc> arcs;
     for (auto node = way.rbegin(); node != way.rend(); ++node) {
       arcs.insert(arcs.end(), nodes_[*node].arcs.begin(), nodes_[*node].arcs.end());
     }
-    return PathAlong(nodes_[way.back()].X_MB, arcs, params_.spacing);
+    const Pose2& X_MFirst = nodes_[way.back()].X_MB;
+    if (!kind_.is_from_goal) return PathAlong(X_MFirst, arcs, params_.spacing);
+    std::reverse(arcs.begin(), arcs.end());
+    for (CarArc& arc : arcs) arc.length = -arc.length;
+    return PathAlong(X_MGoal_, arcs, params_.spacing);
   }
 
-  double CostOf(int node) const { return nodes_[node].cost; }
+  /// [m] Of the way to a node, as the drive's parameters weigh it, whatever the search did.
+  double CostOf(int node) {
+    if (node < 0 || nodes_[node].parent < 0) return 0.0;
+    const Node& end = nodes_[node];
+    const double before = CostOf(end.parent);
+    kind_.backward_factor = params_.backward_factor;
+    scratch_.clear();
+    AppendPoses(nodes_[end.parent].X_MB, end.arcs, params_.spacing, &scratch_);
+    return before + CostAlong(nodes_[end.parent], end.arcs);
+  }
+  /// Whether more expansions might have found a way.
+  bool has_more() const { return !open_.empty(); }
   int num_expansions() const { return num_expansions_; }
 
  private:
@@ -162,7 +198,7 @@ class CarSearch {
     } else {
       best_[KeyOf(node)] = id;
     }
-    open_.push({node.cost + to_goal, to_goal, id});
+    open_.push({node.cost + kind_.haste * to_goal, to_goal, id});
     nodes_.push_back(std::move(node));
   }
 
@@ -212,7 +248,8 @@ class CarSearch {
   }
 
   double FactorOf(const CarArc& arc) const {
-    return (arc.length < 0.0 ? params_.backward_factor : 1.0) *
+    const bool is_backward = (arc.length < 0.0) != kind_.is_from_goal;
+    return (is_backward ? kind_.backward_factor : 1.0) *
            (arc.curvature == 0.0 ? 1.0 : kCurveFactor);
   }
 
@@ -225,6 +262,7 @@ class CarSearch {
   std::array<double, 5> curvatures_;
   ReedsSheppWays ways_;
   const CentreDistances& distances_;
+  SearchKind kind_;
   std::vector<Node> nodes_;
   std::unordered_map<std::uint64_t, int> best_;  // cheapest node of each place
   std::priority_queue<OpenNode> open_;
@@ -250,21 +288,30 @@ CarPathResult PlanCarPath(const Costmap& costmap, const Footprint& footprint, co
       "a car's path needs a turning radius, and steps, headings and costs that are positive");
   CarPathResult result;
   const double radius = params.steering_reserve * min_turning_radius;
-  const CentreDistances distances(costmap, X_MGoal.position(), X_MStart.position(), params.costs);
+  const CentreDistances to_goal(costmap, X_MGoal.position(), X_MStart.position(), params.costs);
+  std::optional<CentreDistances> to_start;  // where it is asked for
   for (const double clearance : {params.clearance, 0.0}) {
-    CarSearch search(costmap, Padded(footprint, clearance), X_MGoal, radius, params, distances);
-    result.status = !search.IsFree(X_MStart)  ? PathStatus::kStartBlocked
-                    : !search.IsFree(X_MGoal) ? PathStatus::kGoalBlocked
-                                              : PathStatus::kNoPath;
-    if (result.status != PathStatus::kNoPath) continue;
-    const std::optional<int> goal = search.Run(X_MStart);
-    result.num_expansions += search.num_expansions();
-    if (!goal) continue;
-    result.status = PathStatus::kFound;
-    result.path = search.PathTo(*goal);
-    result.path.back().X_MB = X_MGoal;
-    result.cost = search.CostOf(*goal);
-    break;
+    const Footprint padded = Padded(footprint, clearance);
+    for (const SearchKind& kind : KindsOf(params)) {
+      if (kind.is_from_goal && !to_start)
+        to_start.emplace(costmap, X_MStart.position(), X_MGoal.position(), params.costs);
+      CarSearch search(costmap, padded, kind.is_from_goal ? X_MStart : X_MGoal, radius, params,
+                       kind.is_from_goal ? *to_start : to_goal, kind);
+      result.status = !search.IsFree(X_MStart)  ? PathStatus::kStartBlocked
+                      : !search.IsFree(X_MGoal) ? PathStatus::kGoalBlocked
+                                                : PathStatus::kNoPath;
+      if (result.status != PathStatus::kNoPath) break;
+      const std::optional<int> end = search.Run(kind.is_from_goal ? X_MGoal : X_MStart);
+      result.num_expansions += search.num_expansions();
+      if (end) {
+        result.status = PathStatus::kFound;
+        result.path = search.PathTo(*end);
+        result.path.back().X_MB = X_MGoal;
+        result.cost = search.CostOf(*end);
+        return result;
+      }
+      if (!search.has_more()) break;  // all that can be reached was looked at
+    }
   }
   return result;
 }

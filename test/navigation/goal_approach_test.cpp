@@ -107,7 +107,7 @@ TEST(GoalWatchTest, ToAndFroBesideTheGoalIsSwinging) {
 TEST(GoalWatchTest, ComingNearerTurningToTheGoalAndBeingFarAreNot) {
   GoalWatch watch{DwaParams{}};
   for (int i = 0; i < 100; ++i)
-    EXPECT_FALSE(watch.Swings({0.002 * i, 0.0, 0.0}, {0.5, 0.0})) << "20 mm/s";
+    EXPECT_FALSE(watch.Swings({0.003 * i, 0.0, 0.0}, {0.5, 0.0})) << "30 mm/s";
   watch.Reset();
   for (int i = 0; i < 60; ++i)
     EXPECT_FALSE(watch.Swings({0.0, 0.0, 3.0 - 0.05 * i}, {0.4, 0.0})) << "0.5 rad/s";

@@ -6,6 +6,7 @@
 
 #include "hires/geometry/angles.h"
 #include "navigation/scenes.h"
+#include "support/rounds.h"
 
 namespace hires::navigation::hybrid_a_star_test {
 namespace {
@@ -130,10 +131,11 @@ TEST(HybridAStarTest, ASearchThatLeadsNowhereEnds) {
   EXPECT_EQ(none.status, PathStatus::kNoPath);
   EXPECT_GT(none.num_expansions, 10);
   CarPathParams bounded;
-  bounded.max_expansions = 5;
+  constexpr int kFew = 5;
+  bounded.max_expansions = bounded.max_last_expansions = kFew;
   const CarPathResult cut = PlanCarPath(MapOf(grid), kCar, from, {4.0, 2.5, kPi}, kRadius, bounded);
   EXPECT_EQ(cut.status, PathStatus::kNoPath);
-  EXPECT_LE(cut.num_expansions, 10);  // with clearance and without
+  EXPECT_LE(cut.num_expansions, 8 * kFew);  // with clearance and without
 }
 
 TEST(HybridAStarTest, RandomRoomsGivePathsThatCanBeDrivenAndTheSameTwice) {
@@ -163,6 +165,43 @@ TEST(HybridAStarTest, RandomRoomsGivePathsThatCanBeDrivenAndTheSameTwice) {
     ExpectDrivable(first, costmap, from, to);
   }
   EXPECT_GE(num_found, 15);
+}
+
+/// Two rooms above each other with a corridor of 1.5 m between, and doors of 0.9 m.
+Costmap Flat() {
+  world::OccupancyGrid grid = FreeGrid(120, 160);  // 6 m x 8 m
+  for (const double y : {3.15, 4.75}) {
+    AddRectangle(&grid, 0.0, y, 2.55, y + 0.1);
+    AddRectangle(&grid, 3.45, y, 6.0, y + 0.1);
+  }
+  return MapOf(grid);
+}
+
+TEST(HybridAStarTest, FindsAWayFromRoomToRoomHoweverBothEndsAreHeaded) {
+  const Costmap costmap = Flat();
+  const int count = hires::test_support::Rounds(80);
+  int num_found = 0;
+  for (int i = 0; i < count; ++i) {
+    base::Rng rng = base::Rng(31).Fork(i);
+    const Pose2 below{rng.Uniform(0.8, 5.2), rng.Uniform(0.8, 2.3), rng.Uniform(-kPi, kPi)};
+    const Pose2 above{rng.Uniform(0.8, 5.2), rng.Uniform(5.7, 7.2), rng.Uniform(-kPi, kPi)};
+    const auto result = PlanCarPath(costmap, kCar, below, above, kRadius);
+    if (result.status != PathStatus::kFound) continue;
+    ++num_found;
+    ExpectDrivable(result, costmap, below, above);
+  }
+  EXPECT_GE(num_found, count - count / 20);
+}
+
+TEST(HybridAStarTest, AHastyWayCostsWhatAnyWayDoes) {
+  const Costmap costmap = Flat();
+  const Pose2 below{3.0, 1.2, 0.5 * kPi}, above{3.0, 6.6, 0.5 * kPi};
+  CarPathParams hasty;
+  hasty.max_expansions = 0;  // the last search alone finds it
+  const auto late = PlanCarPath(costmap, kCar, below, above, kRadius, hasty);
+  const auto first = PlanCarPath(costmap, kCar, below, above, kRadius);
+  ExpectDrivable(late, costmap, below, above);
+  EXPECT_NEAR(late.cost, first.cost, 0.3 * first.cost);
 }
 
 }  // namespace
