@@ -17,6 +17,17 @@ bool IsOfStartPose(const std::string& quantity) {
   return quantity.rfind("start_", 0) == 0 || quantity.rfind("docked_", 0) == 0;
 }
 
+bool IsSpread(const Distribution& distribution) {
+  switch (distribution.kind) {
+    case Distribution::Kind::kFixed:
+      return false;
+    case Distribution::Kind::kUniform:
+      return distribution.first != distribution.second;
+    default:
+      return distribution.second != 0.0;
+  }
+}
+
 }  // namespace
 
 Uncertainty LaidOver(const Uncertainty& base, const Uncertainty& over) {
@@ -46,10 +57,13 @@ std::vector<std::string> CertainQuantities(const Uncertainty& uncertainty) {
 std::string CertainText(const Uncertainty& uncertainty) {
   const std::vector<std::string> certain = CertainQuantities(uncertainty);
   const std::size_t num_named = uncertainty.quantities.size();
-  if (certain.empty()) return {};
-  if (num_named == 0)
+  const bool is_anything_spread =
+      std::any_of(uncertainty.quantities.begin(), uncertainty.quantities.end(),
+                  [](const auto& entry) { return IsSpread(entry.second); });
+  if (!is_anything_spread)
     return "nothing is uncertain: all rollouts are of one and the same truth, so that spreads and "
            "shares say little of a real robot";
+  if (certain.empty()) return {};
   if (certain.size() <= num_named) {
     return fmt::format("taken as certain, as the uncertainty does not name it: {}",
                        base::Join(certain, ", "));

@@ -531,6 +531,7 @@ void DwaPlanner::SetMotionSet(const robot::MotionSet& limits) {
               "limits of motion are finite and not negative");
   impl_->limits_ = limits;
   impl_->approach_.SetMotionSet(limits);
+  impl_->watch_.SetMotionSet(limits);
 }
 
 void DwaPlanner::SetMargin(double margin) {

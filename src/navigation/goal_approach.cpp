@@ -18,6 +18,7 @@ using geometry::Twist2;
 constexpr double kNear = 3.0;              // times the goal's tolerance
 constexpr double kPatience = 2.0;          // [s]
 constexpr double kCloser = 0.05;           // [m] what counts as progress, within that time
+constexpr double kShare = 0.5;             // ... or of what a slow motion set can do in it
 constexpr double kTurnWeight = 0.1;        // [m/rad] of turns towards the goal
 constexpr double kReached = 0.01;          // [m] before the place, or beyond it
 constexpr double kAimed = 0.03;            // [rad]
@@ -30,13 +31,19 @@ constexpr double kReaction = 0.2;          // [s] from what is seen to what the 
 }  // namespace
 
 GoalWatch::GoalWatch(const DwaParams& params)
-    : near_(kNear * params.xy_goal_tolerance), period_(params.control_period) {
+    : near_(kNear * params.xy_goal_tolerance), period_(params.control_period), closer_(kCloser) {
   Reset();
 }
 
 void GoalWatch::Reset() {
   least_ = std::numeric_limits<double>::infinity();
   since_ = 0.0;
+}
+
+void GoalWatch::SetMotionSet(const robot::MotionSet& limits) {
+  const double slowest =
+      std::min(limits.max_linear_velocity, kTurnWeight * limits.max_angular_velocity);
+  closer_ = std::min(kCloser, kShare * kPatience * slowest);
 }
 
 bool GoalWatch::Swings(const Pose2& X_MB, const Vector2d& p_MGoal) {
@@ -47,7 +54,7 @@ bool GoalWatch::Swings(const Pose2& X_MB, const Vector2d& p_MGoal) {
   }
   const double left = p_BGoal.norm() + kTurnWeight * std::abs(std::atan2(p_BGoal.y(), p_BGoal.x()));
   since_ += period_;
-  if (left < least_ - kCloser) {
+  if (left < least_ - closer_) {
     least_ = left;
     since_ = 0.0;
   }

@@ -8,18 +8,20 @@
 
 namespace hires::navigation {
 
-/// Notices a base that swings beside its goal: near it, it has come no nearer and turned no further
-/// towards it for some time. To be told once in a control cycle. A value.
+/// Notices a base that swings beside its goal: near it, it has come hardly nearer and turned hardly
+/// further towards it for some time, by what its motion set lets it do. To be told once in a control cycle. A value.
 class GoalWatch {
  public:
   explicit GoalWatch(const DwaParams& params);
 
+  void SetMotionSet(const robot::MotionSet& limits);
   bool Swings(const geometry::Pose2& X_MB, const Eigen::Vector2d& p_MGoal);
   void Reset();
 
  private:
   double near_;    // [m]
   double period_;  // [s]
+  double closer_;  // [m] what counts as progress
   double least_;   // [m] that remained so far, turns included
   double since_;   // [s]
 };

@@ -17,6 +17,7 @@ using test_support::NoPath;
 using test_support::Success;
 using test_support::Times;
 using test_support::operator+;
+using testing::AllOf;
 using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
@@ -343,6 +344,16 @@ TEST(WhyRecommendedTest, CostDecides) {
   EXPECT_EQ(WhyRecommended(evidence, kCheap, kNames),
             "fast: 60 of 64 rollouts succeeded (at least 84 %), good enough like slow, and its "
             "expected cost is lower, 26.2 s against 30.0 s");
+}
+
+TEST(WhyRecommendedTest, ACheaperOneThatIsNotSureEnoughIsNamedWithWhatIsWanted) {
+  const std::vector<Results> results{Times(7, Success(7.0)) + Times(1, Fall(7.0)),
+                                     Times(8, Success(9.0))};
+  const Criteria criteria = ByCost(5.0);
+  EXPECT_THAT(WhyRecommended(SumUpAll(results, criteria), criteria, kNames),
+              AllOf(HasSubstr("slow: 8 of 8"),
+                    HasSubstr("; fast may cost less, 7.6 s against 9.0 s, but is only known to "
+                              "succeed in 47 % or more, wanted are 50 %")));
 }
 
 TEST(WhyRecommendedTest, EachAlternativeNeedsAName) {

@@ -103,9 +103,15 @@ TEST(LaidOverTest, CorrelationsGoWithTheStartPosesThatTheyAreOf) {
 }
 
 TEST(CertainTextTest, SaysTheShorterHalf) {
-  EXPECT_THAT(CertainText(Parse(kFriction)),
-              HasSubstr("35 of 36 quantities, all but object_friction"));
+  EXPECT_THAT(CertainText(Parse(kFriction)), HasSubstr("nothing is uncertain"));
+  EXPECT_THAT(CertainText(Parse("start_x: {distribution: normal, mean: 0, sd: 0.1, unit: m, "
+                                "source: measured}")),
+              HasSubstr("35 of 36 quantities, all but start_x"));
   EXPECT_THAT(CertainText(NoUncertainty()), HasSubstr("nothing is uncertain"));
+  Uncertainty fixed = LoadUncertainty(kShipped);
+  for (auto& [name, distribution] : fixed.quantities)
+    distribution = {Distribution::Kind::kNormal, 1.0, 0.0};
+  EXPECT_THAT(CertainText(fixed), HasSubstr("nothing is uncertain"));
   Uncertainty nearly = LoadUncertainty(kShipped);
   nearly.quantities.erase("start_x");
   EXPECT_THAT(CertainText(nearly), HasSubstr("does not name it: start_x"));

@@ -115,5 +115,19 @@ TEST(GoalWatchTest, ComingNearerTurningToTheGoalAndBeingFarAreNot) {
   for (int i = 0; i < 100; ++i) EXPECT_FALSE(watch.Swings({0.0, 0.0, 0.0}, {2.0, 0.0}));
 }
 
+TEST(GoalWatchTest, OfASlowMotionSetNoMoreIsAskedThanItCanDo) {
+  GoalWatch watch{DwaParams{}};
+  watch.SetMotionSet({0.02, 0.05, 0.05, 0.1});
+  for (int i = 0; i < 400; ++i)
+    EXPECT_FALSE(watch.Swings({0.0, 0.0, 3.0 - 0.005 * i}, {0.4, 0.0})) << "0.05 rad/s";
+  watch.Reset();
+  for (int i = 0; i < 150; ++i)
+    EXPECT_FALSE(watch.Swings({0.002 * i, 0.0, 0.0}, {0.5, 0.0})) << "20 mm/s";
+  watch.Reset();
+  int cycles = 0;
+  while (cycles < 100 && !watch.Swings({0.0, 0.0, 0.3}, {0.25, 0.0})) ++cycles;
+  EXPECT_LT(cycles, 30);
+}
+
 }  // namespace
 }  // namespace hires::navigation::goal_approach_test

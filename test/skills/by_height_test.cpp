@@ -27,7 +27,8 @@ using ::testing::HasSubstr;
 using ::testing::Not;
 
 constexpr double kCell = 0.05;    // [m]
-constexpr double kLowest = 0.08;  // [m] what is lower is driven over
+constexpr double kLowest = 0.08;  // [m] what is lower is driven over, by who does not touch it
+constexpr double kFloor = 0.005;   // [m] what is no higher is floor
 const robot::MotionSet kSlow{0.30, 1.0, 1.4, 2.0};
 
 struct Part {
@@ -52,7 +53,8 @@ std::vector<Part> DrawnParts(base::Rng* rng) {
   const double top = rng->Uniform(0.15, 0.4), mast = rng->Uniform(0.06, 0.15);
   const double height = rng->Uniform(0.9, 1.6);
   const double x = rng->Uniform(-0.3, 0.1) * length;
-  std::vector<Part> parts{{{length, width, top - 0.04}, {0.0, 0.0, 0.5 * (top + 0.04)}},
+  const double bottom = rng->Uniform(0.0, 0.1);
+  std::vector<Part> parts{{{length, width, top - bottom}, {0.0, 0.0, 0.5 * (top + bottom)}},
                           {{mast, mast, height - top}, {x, 0.0, 0.5 * (height + top)}}};
   if (rng->Bernoulli(0.5)) {
     parts.push_back({{rng->Uniform(0.3, 0.6), rng->Uniform(0.3, 0.8), 0.1},
@@ -89,7 +91,7 @@ double HeightBetween(const Part& a, const Part& b) {
 
 bool Touches(const std::vector<Part>& parts, const Pose2& X_MB, const std::vector<Part>& things) {
   for (const Part& thing : things) {
-    if (thing.middle.z() + 0.5 * thing.size.z() < kLowest) continue;
+    if (thing.middle.z() + 0.5 * thing.size.z() <= kFloor) continue;
     for (const Part& part : parts) {
       if (HeightBetween(part, thing) <= 0.0 &&
           geometry::Distance(geometry::Transformed(X_MB, OutlineOf(part)), OutlineOf(thing)) == 0.0)
@@ -185,7 +187,8 @@ TEST(ByHeightTest, WhereNothingDiffersTheMapIsOneSlice) {
     geometry::Aabb all;
     for (const geometry::Aabb& link : robot::LinkBounds(robot)) all.Include(link);
     const auto padded = geometry::Padded(robot.profile.footprint, robot.profile.footprint_padding);
-    const navigation::Costmap one(world::SliceWorld(world, kLowest, all.upper.z(), kCell, 8.0),
+    const double lowest = std::min(kLowest, std::max(kFloor, all.lower.z()));
+    const navigation::Costmap one(world::SliceWorld(world, lowest, all.upper.z(), kCell, 8.0),
                                   geometry::InscribedRadius(padded), {});
     ExpectSameCosts(*context.costmap, one);
     EXPECT_TRUE(context.body.by_layer.empty());

@@ -116,6 +116,29 @@ TEST(WholeDrivesTest, OnAnEmptyFloorEachArrives) {
   ExpectArrivals(test_support::EmptyFloor({8.0, 8.0}), false, {8.0, 8.0});
 }
 
+/// Motion sets for the last centimetres, of docking or of a load that must not shake.
+TEST(WholeDrivesTest, SlowMotionSetsArriveToo) {
+  int kind = 0;
+  const world::World world = test_support::EmptyFloor({4.0, 4.0});
+  for (const Base& base : Bases()) {
+    if (base.robot.profile.base_controller.drive == Drive::kCarLike) continue;
+    const auto scene = simulation::MakeScene(world, base.robot);
+    const auto context =
+        std::make_shared<const DrivingContext>(MakeDrivingContext(world, base.robot, {}));
+    const base::Rng root = base::Rng(29).Fork(kind++);
+    for (int i = 0; i < hires::test_support::Rounds(40); ++i) {
+      base::Rng rng = root.Fork(i);
+      const robot::MotionSet set{rng.Uniform(0.02, 0.1), rng.Uniform(0.04, 0.2),
+                                 rng.Uniform(0.05, 0.5), rng.Uniform(0.1, 0.5)};
+      Leg leg{{2.0, 2.0, rng.Uniform(-geometry::kPi, geometry::kPi)}, {}};
+      leg.X_MGoal = {rng.Uniform(1.4, 2.6), rng.Uniform(1.4, 2.6),
+                     rng.Uniform(-geometry::kPi, geometry::kPi)};
+      const PlayedLeg played = test_support::PlayLeg(scene, context, leg, set, rng.Fork(7));
+      EXPECT_EQ(ToString(played.status.failure), "") << base.name << " " << i;
+    }
+  }
+}
+
 /// One drive in 200 of a skid-steered base comes to a door at a slant and turns about before it,
 /// the long way: 29.2 s in place of 25.8 s.
 TEST(WholeDrivesTest, InAHouseEachArrives) {

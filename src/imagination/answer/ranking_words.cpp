@@ -223,6 +223,25 @@ std::string WhatSpeaksAgainst(const std::vector<Evidence>& alternatives, const E
       names[rival - alternatives.data()], best.duration.mean - rival->duration.mean);
 }
 
+/// The cheapest that would cost less but is not known to succeed often enough.
+std::string WhoIsNotGoodEnough(const std::vector<Evidence>& alternatives, const Evidence& best,
+                               const Criteria& criteria, const std::vector<std::string>& names) {
+  if (criteria.rule != RankingRule::kCost || !best.cost) return "";
+  const Evidence* cheapest = nullptr;
+  for (const Evidence& evidence : alternatives) {
+    if (Judge(evidence.success, criteria.min_success) == Suitability::kReached) continue;
+    if (!evidence.cost || evidence.cost->mean >= (cheapest ? *cheapest : best).cost->mean) continue;
+    cheapest = &evidence;
+  }
+  if (!cheapest) return "";
+  return fmt::format("; {} may cost less, {}, but is only known to succeed in {:.0f} % or more, "
+                     "wanted are {}",
+                     names[cheapest - alternatives.data()],
+                     Against(cheapest->cost->mean, best.cost->mean, " s", 1),
+                     std::floor(100.0 * cheapest->success.lower),
+                     fmt::format("{:g} %", 100.0 * criteria.min_success));
+}
+
 /// What the failures that were weighed cost, and where the answer would turn.
 std::string WhatPricesSay(const CostReasons* reasons, const std::vector<std::string>& names) {
   if (!reasons) return "";
@@ -247,7 +266,9 @@ std::string WhyRecommended(const std::vector<Evidence>& alternatives, const Crit
       "{}: {}{}", names[*best],
       WhyBetter(winner, alternatives[next], names[next], criteria,
                 reasons ? reasons->next : std::nullopt),
-      WhatSpeaksAgainst(alternatives, winner, criteria, names) + WhatPricesSay(reasons, names));
+      WhatSpeaksAgainst(alternatives, winner, criteria, names) +
+          WhoIsNotGoodEnough(alternatives, winner, criteria, names) +
+          WhatPricesSay(reasons, names));
 }
 
 }  // namespace hires::imagination

@@ -10,6 +10,7 @@
 #include "skills/driving/by_height.h"
 #include "skills/driving/way_blocked.h"
 #include "skills/posture_skills.h"
+#include "world/floor_level.h"
 
 namespace hires::skills {
 namespace {
@@ -53,10 +54,13 @@ std::optional<navigation::CarFollower> MakeFollower(const DrivingContext& contex
   return follower;
 }
 
-double RobotHeight(const robot::Robot& robot) {
+/// What a robot is checked against: what is higher than it drives over, but no more than the floor
+/// step of collision checks above its lowest shape, for it touches what is higher than that.
+Band ObstacleHeights(const robot::Robot& robot, const MoveBaseParams& params) {
   geometry::Aabb all;
   for (const geometry::Aabb& link : robot::LinkBounds(robot)) all.Include(link);
-  return all.upper.z();
+  const double touched = std::min(0.0, all.lower.z()) + world::kFloorStep;
+  return {std::min(params.min_obstacle_height, std::max(touched, all.lower.z())), all.upper.z()};
 }
 
 /// In whole steps: arms in no known posture, measured and never quite the same, give the same
@@ -168,7 +172,7 @@ DrivingContext MakeDrivingContext(const world::OccupancyGrid& map, const robot::
 DrivingContext MakeDrivingContext(const world::World& world, const robot::Robot& robot,
                                   const MoveBaseParams& params) {
   const double margin = MapMargin(world);
-  const Band heights{params.min_obstacle_height, RobotHeight(robot)};
+  const Band heights = ObstacleHeights(robot, params);
   const SlicedByHeight map = SliceByHeight(world, robot, heights, params.map_resolution, margin);
   DrivingContext context = ContextOf(map, robot, params);
   context.obstacles = std::make_shared<const std::vector<world::NamedOutline>>(
@@ -388,11 +392,17 @@ void MoveBase::PlanAnewIfStuck(const robot::Observation& observation) {
   }
 }
 
-/// False when the robot has been going to and fro for too long.
+/// False when the robot has been going to and fro for too long. Of a slow motion set no more is
+/// asked than half of what it lets the robot do meanwhile.
 bool MoveBase::NoteMotion(const robot::Observation& observation) {
   const Pose2 moved = X_MMoved_.Inverse() * observation.X_MB;
-  const double enough = context_->params.oscillation_distance;
-  if (std::hypot(moved.x, moved.y) > enough || std::abs(moved.yaw) > enough / 2) {
+  const MoveBaseParams& params = context_->params;
+  const double half_time = 0.5 * params.oscillation_timeout;
+  const double enough =
+      std::min(params.oscillation_distance, half_time * motion_set_.max_linear_velocity);
+  const double enough_turn =
+      std::min(params.oscillation_distance / 2, half_time * motion_set_.max_angular_velocity);
+  if (std::hypot(moved.x, moved.y) > enough || std::abs(moved.yaw) > enough_turn) {
     X_MMoved_ = observation.X_MB;
     last_moved_ = observation.time;
     oscillations_ = 0;
