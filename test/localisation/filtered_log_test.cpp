@@ -127,7 +127,9 @@ TEST(HeadingFeedTest, RatesThatAreALittleLateAreLeftOut) {
     const RobotLog::Inertia now{0.01 * i, {}, 0.5}, late{0.01 * i - 0.05, {}, -3.0};
     steady.Take(now);
     interleaved.Take(now);
-    if (i > 0) EXPECT_EQ(interleaved.Take(late), FilterOutcome::kLate);
+    if (i > 0) {
+      EXPECT_EQ(interleaved.Take(late), FilterOutcome::kLate);
+    }
     for (OdometryFilter* filter : {&alone, &mixed})
       filter->OnOdometry(now.time, {Pose2{0.0, 0.0, 0.4 * now.time}, {}});
   }
