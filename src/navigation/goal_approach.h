@@ -9,7 +9,8 @@
 namespace hires::navigation {
 
 /// Notices a base that swings beside its goal: near it, it has come hardly nearer and turned hardly
-/// further towards it for some time, by what its motion set lets it do. To be told once in a control cycle. A value.
+/// further towards it for some time, by what its motion set lets it do. To be told once in a
+/// control cycle. A value.
 class GoalWatch {
  public:
   explicit GoalWatch(const DwaParams& params);

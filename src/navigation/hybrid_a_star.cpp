@@ -76,8 +76,7 @@ std::array<SearchKind, 4> KindsOf(const CarPathParams& params) {
 class CarSearch {
  public:
   CarSearch(const Costmap& costmap, Footprint footprint, const Pose2& X_MGoal, double radius,
-            const CarPathParams& params, const CentreDistances& distances,
-            const SearchKind& kind)
+            const CarPathParams& params, const CentreDistances& distances, const SearchKind& kind)
       : costmap_(costmap),
         footprint_(std::move(footprint)),
         X_MGoal_(X_MGoal),

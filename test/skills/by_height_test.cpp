@@ -28,7 +28,7 @@ using ::testing::Not;
 
 constexpr double kCell = 0.05;    // [m]
 constexpr double kLowest = 0.08;  // [m] what is lower is driven over, by who does not touch it
-constexpr double kFloor = 0.005;   // [m] what is no higher is floor
+constexpr double kFloor = 0.005;  // [m] what is no higher is floor
 const robot::MotionSet kSlow{0.30, 1.0, 1.4, 2.0};
 
 struct Part {

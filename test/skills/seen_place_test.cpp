@@ -226,7 +226,8 @@ class BeliefTest : public testing::Test {
     seen.X_MB = X_MB;
     seen.position_sd = position_sd;
     if (has_scans_) seen.scan = ScanIn(world, X_WB, seen.X_OB);
-    seen.objects.push_back({"mug1", "mug", geometry::Lift(X_MB * Pose2{0.8, 0.1, 0.0}, 0.7), 0.0, {}});
+    seen.objects.push_back(
+        {"mug1", "mug", geometry::Lift(X_MB * Pose2{0.8, 0.1, 0.0}, 0.7), 0.0, {}});
     seen.obstacles_M.push_back(geometry::Transformed(X_MB, {{1, 0}, {1.1, 0}, {1.1, 0.1}}));
     robot::Command command;
     skill_.Update(seen, &command);

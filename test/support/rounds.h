@@ -12,9 +12,7 @@ inline bool IsLongRun() { return std::getenv("HIRES_LONG_TESTS") != nullptr; }
 
 /// How often a test draws and looks: all of it with HIRES_LONG_TESTS in the environment, as
 /// `scripts/test --long` has it; else a quarter, the first of them.
-inline int Rounds(int all) {
-  return IsLongRun() ? all : std::max(1, all / 4);
-}
+inline int Rounds(int all) { return IsLongRun() ? all : std::max(1, all / 4); }
 
 /// First line of a test that takes long and seldom breaks: it plays only in the long run.
 #define HIRES_LONG_CASE() \

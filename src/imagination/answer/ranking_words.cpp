@@ -234,12 +234,13 @@ std::string WhoIsNotGoodEnough(const std::vector<Evidence>& alternatives, const 
     cheapest = &evidence;
   }
   if (!cheapest) return "";
-  return fmt::format("; {} may cost less, {}, but is only known to succeed in {:.0f} % or more, "
-                     "wanted are {}",
-                     names[cheapest - alternatives.data()],
-                     Against(cheapest->cost->mean, best.cost->mean, " s", 1),
-                     std::floor(100.0 * cheapest->success.lower),
-                     fmt::format("{:g} %", 100.0 * criteria.min_success));
+  return fmt::format(
+      "; {} may cost less, {}, but is only known to succeed in {:.0f} % or more, "
+      "wanted are {}",
+      names[cheapest - alternatives.data()],
+      Against(cheapest->cost->mean, best.cost->mean, " s", 1),
+      std::floor(100.0 * cheapest->success.lower),
+      fmt::format("{:g} %", 100.0 * criteria.min_success));
 }
 
 /// What the failures that were weighed cost, and where the answer would turn.
@@ -262,13 +263,12 @@ std::string WhyRecommended(const std::vector<Evidence>& alternatives, const Crit
     return fmt::format("{}: the only alternative; {}", names[*best], SuccessText(winner));
   }
   const int next = Rank(alternatives, criteria)[1];
-  return fmt::format(
-      "{}: {}{}", names[*best],
-      WhyBetter(winner, alternatives[next], names[next], criteria,
-                reasons ? reasons->next : std::nullopt),
-      WhatSpeaksAgainst(alternatives, winner, criteria, names) +
-          WhoIsNotGoodEnough(alternatives, winner, criteria, names) +
-          WhatPricesSay(reasons, names));
+  return fmt::format("{}: {}{}", names[*best],
+                     WhyBetter(winner, alternatives[next], names[next], criteria,
+                               reasons ? reasons->next : std::nullopt),
+                     WhatSpeaksAgainst(alternatives, winner, criteria, names) +
+                         WhoIsNotGoodEnough(alternatives, winner, criteria, names) +
+                         WhatPricesSay(reasons, names));
 }
 
 }  // namespace hires::imagination
