@@ -37,6 +37,12 @@ void RefuseLoad(const ImaginationSetup& setup, const std::vector<std::string>& o
   }
 }
 
+void RefuseOtherStorey(const ImaginationSetup& setup, const std::string& area) {
+  const auto elsewhere = setup.skills->elsewhere.find(base::ToLower(area));
+  if (elsewhere != setup.skills->elsewhere.end())
+    throw base::ConfigError("the start: " + elsewhere->second);
+}
+
 /// Who asks knows better than the world's file where an object is.
 void AddInitialObjects(const ImaginationSetup& setup, world::WorldState* state) {
   std::vector<world::ObjectState> objects;
@@ -74,13 +80,19 @@ StartState StartOnTray(const ImaginationSetup& setup, const geometry::Pose2& X_M
 
 StartState MakeStartState(const ImaginationSetup& setup, const std::string& area,
                           const std::vector<std::string>& objects) {
-  StartState start = StartOnTray(setup, geometry::Flatten(AreaPose(setup, area)), objects);
+  const geometry::Pose3 X_MArea = AreaPose(setup, area);
+  RefuseOtherStorey(setup, area);
+  StartState start = StartOnTray(setup, geometry::Flatten(X_MArea), objects);
   AddInitialObjects(setup, &start.world);
   return start;
 }
 
 StartState MakeStartState(const ImaginationSetup& setup, const std::vector<base::Atom>& atoms,
                           const std::vector<PutObject>& put) {
+  for (const base::Atom& atom : atoms) {
+    const bool is_place = base::ToLower(atom.predicate) == "robotat" && atom.arguments.size() == 1;
+    if (is_place) RefuseOtherStorey(setup, atom.arguments.front());
+  }
   const translation::GeometricState state = translation::StateOf(setup.translator, nullptr, atoms);
   StartState start{state.world, state.robot};
   for (const PutObject& object : put) Put(setup, object, &start.world);

@@ -178,6 +178,7 @@ void AddCaveats(const RolloutSetup& setup, const std::vector<base::ActionCall>& 
     return skills::SpecOf(*setup.skills, action).driving != actions::Driving::kNone;
   });
   if (drives) {
+    for (const std::string& note : setup.scene->world.notes) report->caveats.push_back(note);
     for (const std::string& text : setup.scene->robot.assumed)
       report->caveats.push_back("assumed of the robot, " + text);
   }

@@ -5,6 +5,7 @@
 
 #include "hires/base/error.h"
 #include "hires/simulation/robot_simulator.h"
+#include "hires/world/floor.h"
 #include "simulation/frozen_robot.h"
 #include "simulation/head_camera.h"
 #include "simulation/loose_objects.h"
@@ -116,12 +117,14 @@ void RobotSimulator::AddCamera(const base::Rng& rng) {
 
 void RobotSimulator::RefuseBadStart() {
   if (const auto contact = FindContact()) {
-    throw base::ConfigError(
-        fmt::format("robot starts in collision: its '{}' touches '{}'{}, where it stands at x "
-                    "{:.3f} m, y {:.3f} "
-                    "m, yaw {:.3f} rad; move the start",
-                    contact->robot_part, contact->obstacle, PlaceText(*contact), base().X_MB.x,
-                    base().X_MB.y, base().X_MB.yaw));
+    const std::string in_floor =
+        world::WhyInFloor(scene_->world, contact->obstacle, base().X_MB.position());
+    throw base::ConfigError(fmt::format(
+        "robot starts in collision: its '{}' touches '{}'{}, where it stands at x "
+        "{:.3f} m, y {:.3f} "
+        "m, yaw {:.3f} rad; {}",
+        contact->robot_part, contact->obstacle, PlaceText(*contact), base().X_MB.x, base().X_MB.y,
+        base().X_MB.yaw, in_floor.empty() ? "move the start" : in_floor));
   }
   const std::vector<world::ObjectState> objects = GetWorldState().objects;
   for (std::size_t i = 0; i < objects.size(); ++i) {

@@ -5,6 +5,7 @@
 #include "hires/base/check.h"
 #include "hires/base/error.h"
 #include "hires/base/text.h"
+#include "hires/world/floor.h"
 #include "skills/driving/at_seen_place.h"
 #include "skills/look_skills.h"
 #include "skills/object_skills.h"
@@ -43,8 +44,17 @@ void RequireOnMap(const navigation::Costmap& map, const std::string& area,
       area, X_MA.x, X_MA.y, lower.x(), upper.x(), lower.y(), upper.y()));
 }
 
+/// Where a base shall drive. @throws base::ConfigError for an unknown area, or one of another
+/// storey.
+const geometry::Pose2& GoalAt(const SkillSet& skills, const std::string& area) {
+  const geometry::Pose2& X_MA = Lookup(skills.areas, "area", area);
+  const auto elsewhere = skills.elsewhere.find(base::ToLower(area));
+  if (elsewhere != skills.elsewhere.end()) throw base::ConfigError(elsewhere->second);
+  return X_MA;
+}
+
 std::unique_ptr<Skill> MakeMoveBase(const SkillSet& skills, const ActionCall& action) {
-  const geometry::Pose2& X_MGoal = Lookup(skills.areas, "area", action.arguments[0]);
+  const geometry::Pose2& X_MGoal = GoalAt(skills, action.arguments[0]);
   RequireOnMap(*skills.driving->costmap, action.arguments[0], X_MGoal);
   return std::make_unique<MoveBase>(
       skills.driving, X_MGoal,
@@ -64,7 +74,7 @@ DriveTo BlindDrive(const SkillSet& skills, const ActionCall& action) {
 }
 
 std::unique_ptr<Skill> MakeMoveBaseBlind(const SkillSet& skills, const ActionCall& action) {
-  return BlindDrive(skills, action)(Lookup(skills.areas, "area", action.arguments[0]));
+  return BlindDrive(skills, action)(GoalAt(skills, action.arguments[0]));
 }
 
 std::unique_ptr<Skill> MakeMoveTorso(const SkillSet& skills, const ActionCall& action) {
@@ -200,7 +210,11 @@ SkillSet MakeSkillSet(const world::World& world, const robot::Robot& robot,
   skills.driving =
       std::make_shared<const DrivingContext>(MakeDrivingContext(world, robot, driving));
   skills.blind = blind;
-  for (const auto& [name, X_MF] : world.frames) skills.areas[name] = geometry::Flatten(X_MF);
+  for (const auto& [name, X_MF] : world.frames) {
+    skills.areas[name] = geometry::Flatten(X_MF);
+    const std::string why = world::WhyElsewhere(world, name, driving.min_obstacle_height);
+    if (!why.empty()) skills.elsewhere[name] = why;
+  }
   skills.motion_sets = robot.profile.motion_sets;
   skills.default_motion_set = robot.profile.default_motion_set;
   skills.robot_name = robot.model.name;

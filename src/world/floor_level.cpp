@@ -8,6 +8,8 @@
 #include <utility>
 
 #include "hires/base/log.h"
+#include "hires/geometry/angles.h"
+#include "hires/world/floor.h"
 #include "world/mesh_pieces.h"
 
 namespace hires::world {
@@ -42,6 +44,14 @@ std::vector<double> LevelFaces(const geometry::Shape& shape, const geometry::Pos
     }
     return heights;
   }
+  if (const auto* cylinder = std::get_if<geometry::Cylinder>(&shape)) {
+    const bool is_upright =
+        std::abs((X_MS.rotation * Eigen::Vector3d::UnitZ()).z()) >= std::cos(kLevel);
+    const double off = (p_M - X_MS.translation).head<2>().norm();
+    if (is_upright && off <= cylinder->radius)
+      heights.push_back(X_MS.translation.z() + 0.5 * cylinder->length);
+    return heights;
+  }
   const auto* mesh = std::get_if<Mesh>(&shape);
   if (mesh == nullptr) return heights;
   for (const auto& triangle : (*mesh)->triangles) {
@@ -59,14 +69,79 @@ std::vector<double> LevelFaces(const geometry::Shape& shape, const geometry::Pos
   return heights;
 }
 
-/// The face under a point, if it goes on around it: a table's top is no floor.
-std::optional<FloorFace> RoomUnder(const World& world, const Eigen::Vector3d& p_M) {
+/// Under a point or just beside it: joints between tiles are no end of a floor.
+std::optional<FloorFace> FaceNear(const World& world, const Eigen::Vector3d& p_M) {
+  constexpr double kJoint = 0.02;  // [m] to either side
+  if (auto face = FaceUnder(world, p_M)) return face;
+  for (const double x : {kJoint, -kJoint}) {
+    for (const double y : {kJoint, -kJoint}) {
+      if (auto face = FaceUnder(world, p_M + Eigen::Vector3d(x, y, 0.0))) return face;
+    }
+  }
+  return std::nullopt;
+}
+
+bool GoesOnAllAround(const World& world, const Eigen::Vector3d& p_M) {
   constexpr double kAround = 0.75;  // [m]
   for (const double side : {kAround, -kAround}) {
-    if (!FaceUnder(world, p_M + Eigen::Vector3d(side, 0.0, 0.0))) return std::nullopt;
-    if (!FaceUnder(world, p_M + Eigen::Vector3d(0.0, side, 0.0))) return std::nullopt;
+    if (!FaceNear(world, p_M + Eigen::Vector3d(side, 0.0, 0.0))) return false;
+    if (!FaceNear(world, p_M + Eigen::Vector3d(0.0, side, 0.0))) return false;
   }
-  return FaceUnder(world, p_M);
+  return true;
+}
+
+/// As in a corridor: no table is as long.
+bool GoesOnOneWay(const World& world, const Eigen::Vector3d& p_M) {
+  constexpr int kDirections = 48;              // so close that a corridor of 0.4 m has one
+  constexpr double kFar = 3.0, kProbe = 0.25;  // [m]
+  for (int i = 0; i < kDirections; ++i) {
+    const double yaw = 2.0 * geometry::kPi * i / kDirections;
+    const Eigen::Vector3d along(std::cos(yaw), std::sin(yaw), 0.0);
+    double way = kProbe;
+    while (way <= kFar && FaceNear(world, p_M + way * along)) way += kProbe;
+    if (way > kFar) return true;
+  }
+  return false;
+}
+
+/// The face under a point, if it goes on from it: a table's top is no floor.
+std::optional<FloorFace> RoomUnder(const World& world, const Eigen::Vector3d& p_M) {
+  auto face = FaceNear(world, p_M);
+  if (face && !GoesOnAllAround(world, p_M) && !GoesOnOneWay(world, p_M)) face.reset();
+  return face;
+}
+
+/// Of the lowest areas that stand on something. What lies in the ground, and nothing bears it, is
+/// no place to stand at; the floor z = 0 bears what lies on it or higher.
+std::optional<FloorFace> FloorOf(const World& world) {
+  double above = -std::numeric_limits<double>::infinity();
+  while (above < -kFloorStep) {
+    double lowest = std::numeric_limits<double>::infinity();
+    for (const auto& [name, X_MF] : world.frames) {
+      const double z = X_MF.translation.z();
+      if (z > above) lowest = std::min(lowest, z);
+    }
+    for (const auto& [name, X_MF] : world.frames) {
+      const double z = X_MF.translation.z();
+      if (z <= above || z > lowest + kFloorStep) continue;
+      if (auto face = RoomUnder(world, X_MF.translation)) return face;
+    }
+    above = lowest;
+  }
+  return std::nullopt;
+}
+
+/// World::ground_depth of a floor that consists of such faces.
+double GroundBelow(const FloorFace& face, bool has_plane) {
+  constexpr double kRounding = 1e-6;  // [m]
+  const bool lies_on_ground = face.bottom >= -kRounding && face.height > kRounding;
+  if (has_plane || lies_on_ground) return face.height > kFloorStep ? face.height : 0.0;
+  return std::numeric_limits<double>::infinity();
+}
+
+std::string WithSource(const std::string& name, const World& world) {
+  const std::string source = SourceOf(name, world);
+  return fmt::format("'{}'{}", name, source.empty() ? "" : " (" + source + ")");
 }
 
 void Lower(double by, World* world) {
@@ -80,26 +155,30 @@ void Lower(double by, World* world) {
 
 std::optional<FloorFace> FaceUnder(const World& world, const Eigen::Vector3d& p_M) {
   std::optional<FloorFace> highest;
+  const StaticBody* body_under = nullptr;
+  const geometry::Collision* shape_under = nullptr;
   for (const StaticBody& body : world.statics) {
     for (const geometry::Collision& shape : body.collisions) {
       for (const double height : LevelFaces(shape.shape, body.X_MB * shape.X_BS, p_M)) {
         if (std::abs(height - p_M.z()) > kFloorStep) continue;
-        if (!highest || height > highest->height) highest = FloorFace{height, shape.friction};
+        if (highest && height <= highest->height) continue;
+        highest = FloorFace{height, shape.friction, "", 0.0};
+        body_under = &body;
+        shape_under = &shape;
       }
     }
   }
+  if (!highest) return highest;
+  highest->name = NameOf(*body_under, *shape_under);
+  highest->bottom =
+      geometry::BoundsOf(shape_under->shape, body_under->X_MB * shape_under->X_BS).lower.z();
   return highest;
 }
 
-World OnItsFloor(World world) {
-  double lowest = std::numeric_limits<double>::infinity();
-  for (const auto& [name, X_MF] : world.frames) lowest = std::min(lowest, X_MF.translation.z());
-  std::optional<FloorFace> face;
-  for (const auto& [name, X_MF] : world.frames) {
-    if (face || X_MF.translation.z() > lowest + kFloorStep) continue;
-    face = RoomUnder(world, X_MF.translation);
-  }
+World OnItsFloor(World world, bool has_plane) {
+  const std::optional<FloorFace> face = FloorOf(world);
   if (!face) return world;
+  world.ground_depth = GroundBelow(*face, has_plane);
   if (std::abs(face->height) > kFloorStep) {
     Lower(face->height, &world);
     base::Log(
@@ -108,9 +187,56 @@ World OnItsFloor(World world) {
                     "as z = 0, and so do all heights that are given",
                     world.name, face->height));
   }
+  if (world.ground_depth > 0.0) {
+    world.notes.push_back(
+        fmt::format("the floor ends where {} and what else bears a robot end: drives are planned "
+                    "to keep on it, but what slides, falls or drives blindly beyond is imagined as "
+                    "on a floor without end",
+                    WithSource(face->name, world)));
+  }
   world.floor_friction = face->friction;
   world.hash = world.ComputeHash();
   return world;
+}
+
+std::string WhyElsewhere(const World& world, const std::string& area, double step) {
+  const auto X_MF = world.FindFrame(area);
+  if (!X_MF || std::abs(X_MF->translation.z()) <= step) return "";
+  const auto face = RoomUnder(world, X_MF->translation);
+  if (!face) return "";
+  const double z = face->height;
+  return fmt::format(
+      "area '{}' stands on {}, {:.2f} m {} than the floor on which the robot drives (z {:.2f} m "
+      "and "
+      "{:.2f} m of the world's file), and drives are imagined on one level, that of the lowest "
+      "area that something bears; name areas of that level, or take those of others out of the "
+      "world",
+      area, WithSource(face->name, world), std::abs(z), z > 0.0 ? "higher" : "lower",
+      z + world.lowered_by, world.lowered_by);
+}
+
+std::string WhyInFloor(const World& world, const std::string& shape, const Eigen::Vector2d& p_M) {
+  const Eigen::Vector3d here_M(p_M.x(), p_M.y(), 0.0);
+  const auto lowest =
+      std::min_element(world.frames.begin(), world.frames.end(), [](const auto& a, const auto& b) {
+        return a.second.translation.z() < b.second.translation.z();
+      });
+  for (const StaticBody& body : world.statics) {
+    for (const geometry::Collision& part : body.collisions) {
+      if (NameOf(body, part) != shape || lowest == world.frames.end()) continue;
+      for (const double height : LevelFaces(part.shape, body.X_MB * part.X_BS, here_M)) {
+        const Eigen::Vector3d top_M(p_M.x(), p_M.y(), height);
+        if (height <= kFloorStep || !RoomUnder(world, top_M)) continue;
+        return fmt::format(
+            "the top of '{}', z {:.3f} m of the world's file, is a floor, and robots stand at z "
+            "{:.3f} m (the lowest area, '{}', has z {:.3f} m); give areas on a floor its height: "
+            "drives are imagined on one level",
+            shape, height + world.lowered_by, world.lowered_by, lowest->first,
+            lowest->second.translation.z() + world.lowered_by);
+      }
+    }
+  }
+  return "";
 }
 
 Mesh WithoutFloor(const Mesh& mesh, const geometry::Pose3& X_WS, double top) {

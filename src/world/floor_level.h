@@ -1,6 +1,7 @@
 #pragma once
 
 #include <optional>
+#include <string>
 
 #include "hires/world/world.h"
 
@@ -13,15 +14,22 @@ constexpr double kFloorStep = 0.005;
 struct FloorFace {
   double height{0.0};    ///< [m]
   double friction{1.0};  ///< of the shape that it is part of
+  std::string name;      ///< of that shape, NameOf
+  double bottom{0.0};    ///< [m] of that shape
 };
 
-/// The highest level face, of a box or a mesh, that lies under a point within kFloorStep of it.
+/// The highest level face, of a box, an upright cylinder or a mesh, that lies under a point within
+/// kFloorStep of it.
 std::optional<FloorFace> FaceUnder(const World& world, const Eigen::Vector3d& p_M);
 
 /// The same world with the floor on which robots stand at z = 0, where they stand higher or lower:
-/// that is where the lowest areas lie, if a level face bears one of them and goes on 0.75 m around
-/// it. Where such a face bears it at z = 0, its friction is the floor's.
-World OnItsFloor(World world);
+/// that is where the lowest areas lie, if a level face bears one of them and goes on 0.75 m to all
+/// sides of it, or 3 m to one; areas below z = 0 that nothing bears do not count. Where such a face
+/// bears it at z = 0, its friction is the floor's. A floor of such faces ends where they do: below
+/// it lies the plane z = 0 of the file, or the one that is implied there where the shape does not
+/// reach down to it, else nothing (World::ground_depth).
+/// @param has_plane  the file has a plane z = 0.
+World OnItsFloor(World world, bool has_plane = false);
 
 /// The mesh without what lies no higher than `top` [m] of the frame W: parts that lie below it as
 /// a whole, and faces of open sheets. Null: nothing is left; the mesh itself where nothing is so

@@ -99,6 +99,9 @@ class WorldBuilder {
     return std::move(world_);
   }
 
+  /// Whether the file has a plane z = 0.
+  bool has_plane() const { return !floor_.empty(); }
+
  private:
   struct Area {
     std::string name;
@@ -257,7 +260,8 @@ World LoadWorldInParts(const std::string& sdf_path, const std::vector<std::strin
   WorldBuilder builder(&finder);
   ReadSdfWorld(sdf_path, finder, models_per_part,
                [&](const SdfWorldPart& part) { builder.Add(part, sdf_path); });
-  return OnItsFloor(builder.Finish(sdf_path));
+  World world = builder.Finish(sdf_path);
+  return OnItsFloor(std::move(world), builder.has_plane());
 }
 
 ObjectModel LoadObjectModel(const std::string& path) {

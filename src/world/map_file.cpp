@@ -111,9 +111,10 @@ void WriteFile(const fs::path& path, const std::string& text) {
   }
 }
 
-/// The usual unknown is a grey of 205, which thresholds of another map may take for free.
-void WarnOfGreyThatIsFree(const GreyImage& image, const MapParams& params,
-                          const std::string& yaml_path) {
+/// The usual unknown is a grey of 205, which thresholds of another map may take for free. Empty:
+/// no grey counts so.
+std::string TextOfGreyThatIsFree(const GreyImage& image, const MapParams& params,
+                                 const std::string& yaml_path) {
   constexpr double kGrey =
       0.05;  // share of black; what is lighter may be a scanner's or painter's white
   std::map<std::uint8_t, long> greys;
@@ -124,7 +125,7 @@ void WarnOfGreyThatIsFree(const GreyImage& image, const MapParams& params,
     ++greys[grey];
     ++num_cells;
   }
-  if (num_cells == 0) return;
+  if (num_cells == 0) return "";
   const auto most = std::max_element(
       greys.begin(), greys.end(), [](const auto& a, const auto& b) { return a.second < b.second; });
   const double black = BlackOf(most->first, params);
@@ -132,15 +133,12 @@ void WarnOfGreyThatIsFree(const GreyImage& image, const MapParams& params,
   for (const auto& [grey, count] : greys) lightest = std::min(lightest, BlackOf(grey, params));
   const double unknown_from =
       std::floor(lightest * 1000.0) / 1000.0;  // rounded so that it has all unknown
-  base::Log(
-      base::LogLevel::kWarn,
-      fmt::format(
-          "{}: {} of {} cells are grey in {} (most of them {}) and count as free, as their share "
-          "of "
-          "black, {:.3f}, lies below free_thresh {}; grey is usually unknown: free_thresh: {:.3f} "
-          "has them so",
-          yaml_path, num_cells, image.pixels.size(), params.image, int{most->first}, black,
-          params.free_thresh, unknown_from));
+  return fmt::format(
+      "{}: {} of {} cells are grey in {} (most of them {}) and count as free, as their share of "
+      "black, {:.3f}, lies below free_thresh {}; grey is usually unknown: free_thresh: {:.3f} has "
+      "them so",
+      yaml_path, num_cells, image.pixels.size(), params.image, int{most->first}, black,
+      params.free_thresh, unknown_from);
 }
 
 }  // namespace
@@ -150,8 +148,12 @@ OccupancyGrid LoadMap(const std::string& yaml_path) {
   const std::string image_path = (fs::path(yaml_path).parent_path() / params.image).string();
   const std::string bytes = base::ReadTextFile(image_path, 512u << 20);
   const GreyImage image = IsPng(bytes) ? ParsePng(bytes, image_path) : ParsePgm(bytes, image_path);
-  WarnOfGreyThatIsFree(image, params, yaml_path);
   OccupancyGrid grid{params.resolution, image.width, image.height, params.origin, {}};
+  const std::string grey = TextOfGreyThatIsFree(image, params, yaml_path);
+  if (!grey.empty()) {
+    base::Log(base::LogLevel::kWarn, grey);
+    grid.notes.push_back(grey);
+  }
   grid.cells.reserve(image.pixels.size());
   for (int row = image.height - 1; row >= 0; --row) {  // images begin at the top, grids below
     for (int column = 0; column < image.width; ++column) {

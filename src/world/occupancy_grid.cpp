@@ -9,6 +9,7 @@
 #include "hires/base/check.h"
 #include "hires/base/error.h"
 #include "hires/base/text.h"
+#include "world/floor_level.h"
 #include "world/mesh_pieces.h"
 
 namespace hires::world {
@@ -119,6 +120,34 @@ void Occupy(const geometry::Polygon& outline, OccupancyGrid* grid) {
   }
 }
 
+/// Into so many parts along each edge a cell is divided to see how much of it a floor bears: fewer
+/// where the map is that large.
+int PartsOfCell(const OccupancyGrid& grid) {
+  int parts = 5;
+  while (parts > 1 && 1.0 * grid.width * grid.height * parts * parts > kMaxCells) --parts;
+  return parts;
+}
+
+/// Free cells in the place of the grid's, `parts` along each of their edges.
+OccupancyGrid Finer(const OccupancyGrid& grid, int parts) {
+  OccupancyGrid fine;
+  fine.resolution = grid.resolution / parts;
+  fine.width = grid.width * parts;
+  fine.height = grid.height * parts;
+  fine.origin = grid.origin;
+  fine.cells.assign(static_cast<std::size_t>(fine.width) * fine.height, Cell::kFree);
+  return fine;
+}
+
+int PartsBorne(const OccupancyGrid& fine, int column, int row, int parts) {
+  int borne = 0;
+  for (int y = row * parts; y < (row + 1) * parts; ++y) {
+    for (int x = column * parts; x < (column + 1) * parts; ++x)
+      borne += fine.at(x, y) == Cell::kOccupied ? 1 : 0;
+  }
+  return borne;
+}
+
 /// Cells column_begin .. column_end - 1 of the rows row_begin .. row_end - 1.
 struct Block {
   int column_begin, column_end, row_begin, row_end;
@@ -221,10 +250,32 @@ OccupancyGrid SliceWorld(const World& world, double z_min, double z_max, double 
   return grid;
 }
 
+std::optional<OccupancyGrid> FloorHoles(const World& world, double depth, double resolution,
+                                        double margin) {
+  HIRES_CHECK(resolution > 0.0 && std::isfinite(resolution), "a cell has an edge above 0 m");
+  HIRES_CHECK(margin >= 0.0 && std::isfinite(margin), "a margin is not negative");
+  HIRES_CHECK(depth >= 0.0 && std::isfinite(depth), "what is driven over is not negative");
+  if (world.ground_depth <= depth) return std::nullopt;
+  OccupancyGrid holes = GridAround(BoundsOf(world), resolution, margin);
+  const int parts = PartsOfCell(holes);
+  OccupancyGrid fine = Finer(holes, parts);
+  for (const geometry::Polygon& outline : OutlinesInBand(world, nullptr, -depth, kFloorStep)) {
+    Occupy(outline, &fine);
+  }
+  for (int row = 0; row < holes.height; ++row) {
+    for (int column = 0; column < holes.width; ++column) {
+      if (2 * PartsBorne(fine, column, row, parts) >= parts * parts) continue;
+      holes.cells[static_cast<std::size_t>(row) * holes.width + column] = Cell::kOccupied;
+    }
+  }
+  return holes;
+}
+
 World ExtrudeMap(const OccupancyGrid& grid, double height) {
   HIRES_CHECK(height > 0.0 && std::isfinite(height), "walls have a height above 0 m");
   World world;
   world.name = "extruded_map";
+  world.notes = grid.notes;
   StaticBody walls{"map_walls", {}, {}};
   for (const Block& block : Blocks(grid)) {
     walls.collisions.push_back(BoxOf(block, grid, height));

@@ -91,6 +91,7 @@ std::uint64_t World::ComputeHash() const {
   hasher.Add(base::ToLower(name));
   hasher.Add(gravity);
   hasher.Add(floor_friction);
+  if (ground_depth > 0.0) hasher.Add(ground_depth);
   hasher.Add(static_cast<std::uint64_t>(statics.size()));
   for (const StaticBody* body : InOrderOfNames(statics)) AddTo(&hasher, *body);
   hasher.Add(static_cast<std::uint64_t>(frames.size()));

@@ -504,6 +504,16 @@ TEST(StartStateTest, RefusesALoadWithoutATray) {
               AllOf(HasSubstr("robot 'cart' has no tray"), HasSubstr("tray_link")));
 }
 
+TEST(StartStateTest, NoRobotStartsOnAnotherStorey) {
+  ImaginationSetup setup = Hall();
+  skills::SkillSet skills = *setup.skills;
+  skills.elsewhere["door"] = "area 'door' stands on 'gallery'";
+  setup.skills = std::make_shared<const skills::SkillSet>(skills);
+  const auto is_told = AllOf(HasSubstr("the start"), HasSubstr("'door' stands on 'gallery'"));
+  EXPECT_THAT(ConfigErrorOf([&] { MakeStartState(setup, "Door", {}); }), is_told);
+  EXPECT_THAT(ConfigErrorOf([&] { MakeStartState(setup, {{"RobotAt", {"Door"}}}, {}); }), is_told);
+}
+
 TEST(StartStateTest, ReadsAtoms) {
   const StartState start = MakeStartState(Hall(), {{"HasArmPosture", {"leftArm1", "tucked"}},
                                                    {"On", {"mill1", "trayArea1"}},

@@ -107,6 +107,14 @@ TEST(CaveatsOfTest, AnObjectThatIsCarriedIsNamedWithItsModel) {
               ElementsAre(AllOf(HasSubstr("(model mill)"), HasSubstr("validated are cup"))));
 }
 
+TEST(CaveatsOfTest, NotesOfTheWorldAreCaveatsOfDrives) {
+  world::World room = Room();
+  room.notes = {"9048 cells are grey and count as free"};
+  Report report;
+  AddCaveats(RoomRollouts(room, "mill"), kDrive, Wide(), &report);
+  EXPECT_THAT(report.caveats, testing::Contains(room.notes.front()));
+}
+
 TEST(CaveatsOfTest, TheFloorThatMayBeDrawnCounts) {
   Validated validated = Wide();
   validated.floor_roughness = {0.001, "docs/floor.md"};

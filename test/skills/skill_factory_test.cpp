@@ -54,6 +54,21 @@ TEST(SkillFactoryTest, RefusesUnknownActions) {
   EXPECT_THAT(WhyNot("", {}), HasSubstr("action '' is unknown"));
 }
 
+TEST(SkillFactoryTest, RefusesToDriveToAnotherStorey) {
+  world::World room = hires::test_support::Room();
+  room.statics.push_back(hires::test_support::Block("gallery", {2.0, 2.0, 0.1}, {4.5, 2.0, 1.95}));
+  hires::test_support::AddArea(&room, "Up", geometry::Lift({4.5, 2.0, 0.0}, 2.0));
+  const SkillSet skills = MakeSkillSet(room, hires::test_support::TrayRobot(), {}, {});
+  for (const char* drive : {"move_base", "move_base_blind"}) {
+    EXPECT_THAT(
+        ConfigErrorOf([&] {
+          MakeSkill(skills, {drive, {"up"}});
+        }),
+        AllOf(HasSubstr("'up' stands on 'gallery', 2.00 m higher"), HasSubstr("one level")));
+    EXPECT_NO_THROW(MakeSkill(skills, {drive, {"east"}}));
+  }
+}
+
 TEST(SkillFactoryTest, RefusesUnknownAreas) {
   EXPECT_THAT(WhyNot("move_base", {"weast"}),
               AllOf(HasSubstr("move_base(weast)"), HasSubstr("area 'weast' is unknown"),

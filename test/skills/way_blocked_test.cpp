@@ -133,6 +133,50 @@ TEST(WayBlockedTest, WhatStandsAtAGoalIsNamedWithItsLine) {
   }
 }
 
+/// Two slabs along the way from (0, 0) to (6, 0), with a gap from x 3 on and a bridge over it, all
+/// turned.
+world::World WithGap(double gap, double bridge, double yaw) {
+  world::World world;
+  world.ground_depth = 1.0;
+  world.statics = {Block("near_slab", {6.0, 8.0, 0.2}, {0.0, 0.0, -0.1}),
+                   Block("far_slab", {6.0, 8.0, 0.2}, {6.0 + gap, 0.0, -0.1})};
+  if (bridge > 0.0) {
+    world.statics.push_back(Block("bridge", {gap, bridge, 0.2}, {3.0 + 0.5 * gap, 0.0, -0.1}));
+  }
+  for (world::StaticBody& body : world.statics)
+    body.X_MB = geometry::Lift({0.0, 0.0, yaw}) * body.X_MB;
+  return world;
+}
+
+TEST(WayBlockedTest, GroundThatNoFloorBearsIsNotDrivenOver) {
+  base::Rng rng(14);
+  for (int i = 0; i < Rounds(40); ++i) {
+    const double yaw = rng.Uniform(-3.0, 3.0), gap = rng.Uniform(0.15, 2.0);
+    const bool is_wide = i % 2 == 0;
+    const double bridge = is_wide ? rng.Uniform(0.9, 2.0) : rng.Uniform(0.0, 0.4);
+    const auto context = std::make_shared<const DrivingContext>(
+        MakeDrivingContext(WithGap(gap, bridge, yaw), TrayRobot(), MoveBaseParams{}));
+    const Pose2 X_MT{0.0, 0.0, yaw}, start = X_MT, goal = X_MT * Pose2{4.5 + gap, 0.0, 0.0};
+    const Status over = FirstWord(context, start, goal);
+    const Pose2 off = X_MT * Pose2{3.0 + 0.5 * gap, bridge + 1.0, 0.0};
+    const Status onto = FirstWord(context, start, off);
+    const Status from = FirstWord(context, off, start);
+    ASSERT_EQ(onto.failure.code, FailureCode::kGoalBlocked) << "gap " << gap;
+    EXPECT_THAT(onto.failure.detail, AllOf(HasSubstr("no floor bears the robot at x"),
+                                           HasSubstr("the goal"), HasSubstr("_slab' ends")));
+    ASSERT_EQ(from.failure.code, FailureCode::kStartBlocked);
+    EXPECT_THAT(from.failure.detail, AllOf(HasSubstr("no floor bears"), HasSubstr("the start")));
+    if (is_wide) {
+      EXPECT_EQ(ToString(over.failure), "") << "gap " << gap << " bridge " << bridge;
+      continue;
+    }
+    ASSERT_EQ(over.failure.code, FailureCode::kNoPath) << "gap " << gap << " bridge " << bridge;
+    EXPECT_THAT(over.failure.detail,
+                AllOf(HasSubstr("the way ends at"), HasSubstr("no floor bears the robot"),
+                      HasSubstr("ends")));
+  }
+}
+
 /// Free but for a border, x 0 .. 6, y 0 .. 4.
 world::OccupancyGrid Plain() {
   world::OccupancyGrid map;

@@ -1,5 +1,7 @@
 #include "world/floor_level.h"
 
+#include <fmt/format.h>
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <map>
@@ -7,6 +9,8 @@
 #include <string>
 
 #include "hires/base/rng.h"
+#include "hires/world/floor.h"
+#include "hires/world/occupancy_grid.h"
 #include "support/box_mesh.h"
 #include "support/rounds.h"
 #include "support/scenes.h"
@@ -16,6 +20,8 @@ namespace {
 
 using hires::test_support::Block;
 using hires::test_support::Rounds;
+using ::testing::AllOf;
+using ::testing::HasSubstr;
 
 /// A slab whose top lies at `top`, and areas on it; `as_mesh`: of triangles.
 World OnSlab(double top, double thickness, bool as_mesh) {
@@ -53,6 +59,132 @@ TEST(FloorLevelTest, AreasThatNothingBearsLeaveTheWorldAlone) {
   const World after = OnItsFloor(world);
   EXPECT_EQ(after.lowered_by, 0.0);
   EXPECT_EQ(after.floor_friction, 1.0);
+}
+
+/// A slab in the world of an area, x of its ends, and where the file has its top.
+World Ending(double from, double to, double width, double top, double thickness) {
+  World world;
+  world.statics = {Block("slab", {to - from, width, thickness},
+                         {0.5 * (from + to), 0.0, top - 0.5 * thickness})};
+  world.frames["a"] = {{0.0, 0.0, top}, Eigen::Quaterniond::Identity()};
+  return world;
+}
+
+TEST(FloorLevelTest, AFloorEndsWhereItsFacesDo) {
+  base::Rng rng(3);
+  for (int i = 0; i < Rounds(100); ++i) {
+    const double top = rng.Uniform(-1.0, 1.0), thickness = rng.Uniform(0.05, 0.5);
+    const double depth = rng.Uniform(0.0, 0.2);
+    const World slab = Ending(-2.0, rng.Uniform(1.0, 3.0), 4.0, top, thickness);
+    for (const bool has_plane : {false, true}) {
+      const World world = OnItsFloor(slab, has_plane);
+      const bool is_above = has_plane || (top > 0.0 && top >= thickness);
+      const double below = is_above ? std::max(0.0, top) : 1e9;
+      if (std::abs(below - depth) < kFloorStep || std::abs(below) < 2.0 * kFloorStep) continue;
+      const auto holes = FloorHoles(world, depth);
+      ASSERT_EQ(holes.has_value(), below > depth) << top << " " << thickness << " " << depth;
+      EXPECT_EQ(world.notes.size(), 1u);
+      if (!holes) continue;
+      for (int row = 0; row < holes->height; ++row) {
+        for (int column = 0; column < holes->width; ++column) {
+          const Eigen::Vector2d p = holes->CentreOf(column, row);
+          const double x = std::abs(p.x() - slab.statics[0].X_MB.translation.x());
+          const auto& box = std::get<geometry::Box>(slab.statics[0].collisions[0].shape);
+          const double beyond = std::max(x - 0.5 * box.size.x(), std::abs(p.y()) - 2.0);
+          if (std::abs(beyond) <= 0.02) continue;  // of a cell that the end runs through
+          ASSERT_EQ(holes->at(column, row) == Cell::kOccupied, beyond > 0.0) << p.transpose();
+        }
+      }
+    }
+  }
+}
+
+TEST(FloorLevelTest, WorldsWithoutAFloorFaceHaveAFloorWithoutEnd) {
+  World world = Ending(-2.0, 2.0, 4.0, 0.0, 0.1);
+  world.frames["a"].translation.z() = 0.3;
+  for (const World& after : {OnItsFloor(world), OnItsFloor(World()),
+                             OnItsFloor(Ending(-2.0, 2.0, 4.0, 0.0, 0.1), true)}) {
+    EXPECT_EQ(after.ground_depth, 0.0);
+    EXPECT_TRUE(after.notes.empty());
+    EXPECT_FALSE(FloorHoles(after, 0.0));
+  }
+}
+
+TEST(FloorLevelTest, JointsAndShallowRecessesAreNoHoles) {
+  base::Rng rng(4);
+  for (int i = 0; i < Rounds(60); ++i) {
+    const double joint = rng.Uniform(0.0, 0.01), recess = rng.Uniform(0.0, 0.15);
+    World world;
+    for (int x = -2; x < 2; ++x) {
+      for (int y = -2; y < 2; ++y) {
+        const double low = x == 1 && y == 1 ? recess : 0.0;
+        world.statics.push_back(Block(fmt::format("tile{}{}", x, y),
+                                      {1.0 - joint, 1.0 - joint, 0.1},
+                                      {x + 0.5, y + 0.5, 0.35 - low}));
+      }
+    }
+    world.frames["a"] = {{0.0, 0.0, 0.4}, Eigen::Quaterniond::Identity()};  // on a joint
+    const World after = OnItsFloor(world);
+    ASSERT_NEAR(after.lowered_by, 0.4, 1e-9) << joint;
+    const auto holes = FloorHoles(after, 0.08, 0.05, 0.0);
+    ASSERT_TRUE(holes);
+    for (int row = 0; row < holes->height; ++row) {
+      for (int column = 0; column < holes->width; ++column) {
+        const Eigen::Vector2d p = holes->CentreOf(column, row);
+        const bool is_in_recess = p.x() > 1.05 && p.y() > 1.05;
+        if (p.cwiseAbs().maxCoeff() > 1.95 || (!is_in_recess && p.minCoeff() > 0.95)) continue;
+        const bool is_hole = is_in_recess && recess > 0.08;
+        ASSERT_EQ(holes->at(column, row) == Cell::kOccupied, is_hole)
+            << p.transpose() << " joint " << joint << " recess " << recess;
+      }
+    }
+  }
+}
+
+TEST(FloorLevelTest, CorridorsDiscsAndStrayFramesLeaveAFloorOne) {
+  base::Rng rng(5);
+  for (int i = 0; i < Rounds(60); ++i) {
+    const double top = rng.Uniform(0.1, 0.5);
+    World corridor = Ending(-2.0, 4.0, rng.Uniform(0.45, 1.4), top, 0.1);
+    World stray = Ending(-2.0, 4.0, 4.0, top, 0.1);
+    stray.frames["below"] = {{0.0, 3.0, -rng.Uniform(0.1, 3.0)}, Eigen::Quaterniond::Identity()};
+    World disc = corridor;
+    disc.statics[0].collisions[0].shape = geometry::Cylinder{rng.Uniform(3.0, 8.0), 0.1};
+    World table = corridor;
+    table.statics[0].collisions[0].shape = geometry::Box{{1.8, rng.Uniform(0.5, 1.0), 0.1}};
+    table.statics[0].X_MB.translation.x() = 0.0;
+    const double yaw = rng.Uniform(-3.0, 3.0);
+    for (World* world : {&corridor, &stray, &disc, &table}) {
+      for (auto& [name, X_MF] : world->frames) X_MF = geometry::Lift({0.0, 0.0, yaw}) * X_MF;
+      for (StaticBody& body : world->statics) body.X_MB = geometry::Lift({0, 0, yaw}) * body.X_MB;
+      const double lowered = world == &table ? 0.0 : top;
+      EXPECT_NEAR(OnItsFloor(*world).lowered_by, lowered, 1e-9) << i;
+    }
+  }
+}
+
+TEST(FloorLevelTest, AreasOfAnotherStoreyAndBuriedOnesAreTold) {
+  base::Rng rng(6);
+  for (int i = 0; i < Rounds(60); ++i) {
+    const double height = rng.Uniform(0.2, 3.0), base = rng.Uniform(0.1, 0.5);
+    World world = Ending(-6.0, 6.0, 12.0, base, 0.1);
+    world.statics.push_back(Block("mezzanine", {3.0, 3.0, 0.1}, {4.0, 0.0, base + height - 0.05}));
+    for (const double x : {3.0, 4.0})
+      world.frames[x == 4.0 ? "up" : "table"] = {{x, 0.0, base + height - (x == 4.0 ? 0.0 : 0.1)},
+                                                 Eigen::Quaterniond::Identity()};
+    const World after = OnItsFloor(world);
+    EXPECT_EQ(WhyElsewhere(after, "a", 0.08), "");
+    EXPECT_EQ(WhyElsewhere(after, "table", 0.08), "");
+    EXPECT_EQ(WhyElsewhere(after, "up", height + 0.01), "");
+    EXPECT_THAT(WhyElsewhere(after, "up", 0.08),
+                AllOf(HasSubstr("'up' stands on 'mezzanine'"),
+                      HasSubstr(fmt::format("{:.2f} m higher", height)), HasSubstr("one level")));
+    EXPECT_EQ(WhyInFloor(after, "slab", {0.0, 0.0}), "");
+    world.frames = {{"a", {{0.0, 0.0, 0.0}, Eigen::Quaterniond::Identity()}}};
+    EXPECT_THAT(WhyInFloor(OnItsFloor(world), "slab", {0.0, 0.0}),
+                AllOf(HasSubstr(fmt::format("z {:.3f} m of the world's file, is a floor", base)),
+                      HasSubstr("'a', has z 0.000 m")));
+  }
 }
 
 TEST(FloorLevelTest, AMeshWithoutItsFloorKeepsItsWalls) {

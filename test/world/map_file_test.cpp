@@ -63,7 +63,9 @@ TEST_F(MapFileTest, GreyThatCountsAsFreeIsWarnedOf) {
   generous.replace(generous.find("0.196"), 5, "0.25");
   {
     const test_support::LogCatcher log(base::LogLevel::kWarn);
-    EXPECT_EQ(Load(generous).at(3, 1), Cell::kFree) << "the answer stays that of map_server";
+    const OccupancyGrid free = Load(generous);
+    EXPECT_EQ(free.at(3, 1), Cell::kFree) << "the answer stays that of map_server";
+    EXPECT_EQ(ExtrudeMap(free, 1.0).notes, log.lines) << "answers have it as a caveat";
     ASSERT_EQ(log.lines.size(), 1u);
     EXPECT_THAT(
         log.lines[0],
@@ -74,6 +76,7 @@ TEST_F(MapFileTest, GreyThatCountsAsFreeIsWarnedOf) {
   generous.replace(generous.find("0.25"), 4, "0.137");
   const OccupancyGrid grid = Load(generous);
   EXPECT_TRUE(log.lines.empty());
+  EXPECT_TRUE(grid.notes.empty());
   EXPECT_EQ(std::count(grid.cells.begin(), grid.cells.end(), Cell::kUnknown), 4);
 }
 

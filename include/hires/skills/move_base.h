@@ -62,6 +62,10 @@ struct DrivingContext {
   std::vector<MarginMap> with_margin;  ///< the widest first; none: nothing but the map's own
   /// What of a world stands where it may be in the way, by name; null for a map.
   std::shared_ptr<const std::vector<world::NamedOutline>> obstacles;
+  /// Cells of the costmap that no floor bears (world::FloorHoles); null: the floor has no end.
+  std::shared_ptr<const world::OccupancyGrid> holes;
+  /// What bears a base, by name, where the floor ends somewhere; else null.
+  std::shared_ptr<const std::vector<world::NamedOutline>> floor;
 
   std::optional<MapByPlane> by_plane;           ///< with an obstacle layer
   std::shared_ptr<const SeenPlace> seen_place;  ///< of a world, where asked for; else null

@@ -18,7 +18,9 @@ namespace hires::skills {
 struct SkillSet {
   std::shared_ptr<const DrivingContext> driving;
   MoveBaseBlindParams blind;
-  std::map<std::string, geometry::Pose2> areas;         ///< lower-case name -> X_MArea
+  std::map<std::string, geometry::Pose2> areas;  ///< lower-case name -> X_MArea
+  /// Lower-case names of areas to which no base drives, and why: they lie on another storey.
+  std::map<std::string, std::string> elsewhere;
   std::map<std::string, robot::MotionSet> motion_sets;  ///< lower-case name
   std::string default_motion_set;
   std::string robot_name;

@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -19,6 +20,7 @@ struct OccupancyGrid {
   int height{0};
   Eigen::Vector2d origin{Eigen::Vector2d::Zero()};  ///< [m] in map
   std::vector<Cell> cells;
+  std::vector<std::string> notes{};  ///< as World::notes, of the map that it was read from
 
   Cell at(int column, int row) const {
     return cells[static_cast<std::size_t>(row) * width + column];
@@ -44,6 +46,13 @@ std::vector<NamedOutline> NamedOutlinesInBand(const World& world, double z_min, 
 /// laser sees it); all others are free. Covers all static bodies plus `margin` [m].
 OccupancyGrid SliceWorld(const World& world, double z_min, double z_max, double resolution = 0.05,
                          double margin = 0.5);
+
+/// In the cells of SliceWorld, occupied are those that no floor bears: more than half of their area
+/// (to a fifth of a cell; narrower joints and cracks are none) no static body reaches between
+/// `depth` below z = 0 and z = 0, and ground lies deeper than that. Nothing where
+/// World::ground_depth is no more than `depth` [m].
+std::optional<OccupancyGrid> FloorHoles(const World& world, double depth, double resolution = 0.05,
+                                        double margin = 0.5);
 
 /// Reads a map_server YAML and its PGM (P2, P5) or PNG. Thresholds as map_server's trinary mode.
 /// @throws base::ConfigError naming file, key and remedy (a missing origin included, as map_server

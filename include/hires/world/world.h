@@ -63,6 +63,12 @@ struct World {
   /// [m] by which the heights of the file were lowered, as robots stand higher there than at z = 0
   /// (OnItsFloor). For people: no part of the hash.
   double lowered_by{0.0};
+  /// [m] How far below the floor z = 0 ground lies where no static body bears a robot (OnItsFloor).
+  /// 0: the floor is a plane without end; infinity: nothing is known to be there.
+  double ground_depth{0.0};
+  /// What people should know of the world who trust an answer about drives in it: whole sentences
+  /// without a full stop. No part of the hash.
+  std::vector<std::string> notes;
   /// Where static bodies and their shapes stand, "hall.world:12", by their names (NameOf); empty
   /// where no file of a world has them. For people: no part of the hash.
   std::map<std::string, std::string> sources;

@@ -141,6 +141,12 @@ double LaserPlane(const robot::Robot& robot) {
       "`obstacle_layer: none` in the scene");
 }
 
+/// What no floor bears is in the way of the whole base.
+void CloseHoles(const world::OccupancyGrid& holes, world::OccupancyGrid* map) {
+  for (std::size_t i = 0; i < holes.cells.size(); ++i)
+    if (holes.cells[i] == world::Cell::kOccupied) map->cells[i] = world::Cell::kOccupied;
+}
+
 /// @param seen  has what is in the laser's plane, `world` everything, in the same cells.
 MapByPlane ByPlane(const world::OccupancyGrid& seen, const SlicedByHeight& world,
                    const DrivingContext& context) {
@@ -153,6 +159,7 @@ MapByPlane ByPlane(const world::OccupancyGrid& seen, const SlicedByHeight& world
       beyond.cells[static_cast<std::size_t>(row) * beyond.width + column] = world::Cell::kFree;
     }
   }
+  if (context.holes) CloseHoles(*context.holes, &beyond);
   const double radius = geometry::InscribedRadius(context.footprint);
   by_plane.beyond = std::make_shared<const navigation::Costmap>(
       Layered({beyond, radius, context.params.costmap}, world.layers, *context.robot));
@@ -173,8 +180,16 @@ DrivingContext MakeDrivingContext(const world::World& world, const robot::Robot&
                                   const MoveBaseParams& params) {
   const double margin = MapMargin(world);
   const Band heights = ObstacleHeights(robot, params);
-  const SlicedByHeight map = SliceByHeight(world, robot, heights, params.map_resolution, margin);
+  SlicedByHeight map = SliceByHeight(world, robot, heights, params.map_resolution, margin);
+  const double step = params.min_obstacle_height;  // what is no deeper is driven over as well
+  const auto holes = world::FloorHoles(world, step, params.map_resolution, margin);
+  if (holes) CloseHoles(*holes, &map.whole);
   DrivingContext context = ContextOf(map, robot, params);
+  if (holes) {
+    context.holes = std::make_shared<const world::OccupancyGrid>(*holes);
+    context.floor = std::make_shared<const std::vector<world::NamedOutline>>(
+        world::NamedOutlinesInBand(world, -step, 0.0));
+  }
   context.obstacles = std::make_shared<const std::vector<world::NamedOutline>>(
       world::NamedOutlinesInBand(world, heights.first, heights.second));
   if (!params.obstacle_layer && !params.seen_place) return context;

@@ -206,21 +206,42 @@ class Explainer {
     return nearest;
   }
 
+  /// Whether no floor bears a base in the cell there, and nothing stands in it.
+  bool IsHole(const Eigen::Vector2d& p_M) const {
+    if (!context_.holes) return false;
+    int column = 0, row = 0;
+    costmap_.CellOf(p_M, &column, &row);
+    if (!costmap_.Inside(column, row)) return false;
+    if (context_.holes->at(column, row) != world::Cell::kOccupied) return false;
+    return !context_.obstacles || NearestOf(*context_.obstacles, CellAt(p_M), 0.0) == nullptr;
+  }
+
+  /// "'slab' (hall.world:4) ends 0.20 m from there": what bears a base nearest to a hole.
+  std::string FloorEndText(const Eigen::Vector2d& p_M) const {
+    const world::NamedOutline* nearest =
+        NearestOf(*context_.floor, CellAt(p_M), std::numeric_limits<double>::infinity());
+    if (nearest == nullptr) return "nothing bears it";
+    const double distance = geometry::Distance(nearest->outline_M, CellAt(p_M));
+    if (distance < costmap_.resolution()) return NameText(*nearest) + " ends there";
+    return fmt::format("{} ends {:.2f} m from there", NameText(*nearest), distance);
+  }
+
   /// "'wall::c0'", "unmapped ground", "a wall of the map": what has the cell there.
   std::string WhatIsAt(const Eigen::Vector2d& cell_M) const {
     if (IsUnknown(cell_M)) return "unmapped (unknown) ground";
+    if (IsHole(cell_M)) return "a place where no floor bears the robot, " + FloorEndText(cell_M);
     if (!context_.obstacles) return "a wall of the map";
     const world::NamedOutline* nearest = NearestTo(cell_M);
     if (nearest == nullptr) return "a thing that stands about";
-    const std::string source = nearest->source.empty() ? "" : " (" + nearest->source + ")";
-    return fmt::format("'{}'{}", nearest->name, source);
+    return NameText(*nearest);
   }
 
   /// ": 'top' is 0.70 m to 0.75 m up, where the robot is 0.12 m wide, and its footprint counts at
   /// all heights": where the shapes of the robot at these heights are narrower than its footprint,
   /// and nothing else has the cell there; else empty.
   std::string HeightText(const Eigen::Vector2d& cell_M) const {
-    const world::NamedOutline* there = context_.obstacles ? NearestTo(cell_M) : nullptr;
+    const bool is_thing = context_.obstacles && !IsHole(cell_M);
+    const world::NamedOutline* there = is_thing ? NearestTo(cell_M) : nullptr;
     if (there == nullptr) return "";
     Band heights{there->lower, there->upper};
     for (const world::NamedOutline& other : *context_.obstacles) {
@@ -268,18 +289,27 @@ class Explainer {
             cell_M + Eigen::Vector2d(half, half), cell_M + Eigen::Vector2d(-half, half)};
   }
 
-  /// What has a cell, of several the first; or null. @pre there are named obstacles
-  const world::NamedOutline* NearestTo(const Eigen::Vector2d& cell_M) const {
-    const geometry::Polygon cell = CellAt(cell_M);
+  static std::string NameText(const world::NamedOutline& thing) {
+    return fmt::format("'{}'{}", thing.name, thing.source.empty() ? "" : " (" + thing.source + ")");
+  }
+
+  /// What is nearest to a cell, no farther than `most` [m], of several the first; or null.
+  static const world::NamedOutline* NearestOf(const std::vector<world::NamedOutline>& things,
+                                              const geometry::Polygon& cell, double most) {
     const world::NamedOutline* nearest = nullptr;
-    double least = costmap_.resolution();
-    for (const world::NamedOutline& obstacle : *context_.obstacles) {
-      const double distance = geometry::Distance(obstacle.outline_M, cell);
+    double least = most;
+    for (const world::NamedOutline& thing : things) {
+      const double distance = geometry::Distance(thing.outline_M, cell);
       if (distance > least || (nearest != nullptr && distance == least)) continue;
-      nearest = &obstacle;
+      nearest = &thing;
       least = distance;
     }
     return nearest;
+  }
+
+  /// What has a cell, of several the first; or null. @pre there are named obstacles
+  const world::NamedOutline* NearestTo(const Eigen::Vector2d& cell_M) const {
+    return NearestOf(*context_.obstacles, CellAt(cell_M), costmap_.resolution());
   }
 
   const DrivingContext& context_;
@@ -403,6 +433,12 @@ std::string WhyBlocked(const DrivingContext& context, const Costmap& costmap,
   if (explainer.IsUnknown(p_M))
     return fmt::format("{} is unmapped (unknown) in the map; map it, or choose another place",
                        where);
+  if (explainer.IsHole(p_M)) {
+    return fmt::format(
+        "no floor bears the robot at x {:.2f} m, y {:.2f} m, the {}: {}; choose "
+        "another place",
+        p_M.x(), p_M.y(), place, explainer.FloorEndText(p_M));
+  }
   const auto nearest = explainer.NearestObstacle(p_M);
   if (!nearest) return fmt::format("{} is not free", where);
   const std::string what = explainer.WhatIsAt(*nearest);
