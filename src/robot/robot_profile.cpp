@@ -324,11 +324,13 @@ struct TrayCandidate {
   Pose3 X_TO;        ///< upright on the middle of its top, in the link's frame
 };
 
-TrayCandidate FindTray(const RobotModel& model) {
-  const std::vector<Pose3> X_R = ForwardKinematics(model, {});
+/// @param may_be  which links are looked at, by name.
+template <typename MayBe>
+TrayCandidate FindTray(const RobotModel& model, const JointPositions& joints, const MayBe& may_be) {
+  const std::vector<Pose3> X_R = ForwardKinematics(model, joints);
   TrayCandidate best;
   for (std::size_t i = 0; i < model.links.size(); ++i) {
-    if (base::ToLower(model.links[i].name).find("tray") == std::string::npos) continue;
+    if (!may_be(model.links[i].name)) continue;
     for (const geometry::Collision& collision : model.links[i].collisions) {
       const geometry::Aabb bounds = geometry::BoundsOf(collision.shape, X_R[i] * collision.X_BS);
       const Eigen::Vector3d size = bounds.upper - bounds.lower;
@@ -342,10 +344,21 @@ TrayCandidate FindTray(const RobotModel& model) {
 }
 
 void GuessTray(const RobotModel& model, RobotProfile* profile) {
-  const TrayCandidate tray = FindTray(model);
+  const TrayCandidate tray = FindTray(model, {}, [](const std::string& link) {
+    return base::ToLower(link).find("tray") != std::string::npos;
+  });
   if (tray.link < 0) return;
   profile->tray_link = model.links[tray.link].name;
   profile->X_TO = tray.X_TO;
+}
+
+/// Of a tray that the file names, a file that says nothing of the place on it.
+/// @pre CheckProfile
+void PlaceOnTray(const ParamReader& in, const RobotModel& model, RobotProfile* profile) {
+  if (!in.Has("tray_link") || profile->tray_link.empty() || in.Has("object_on_tray")) return;
+  profile->X_TO = FindTray(model, profile->joints, [&](const std::string& link) {
+                    return link == profile->tray_link;
+                  }).X_TO;
 }
 
 void GuessAndSayDrive(const RobotModel& model, BaseControllerParams* params) {
@@ -460,6 +473,7 @@ Robot LoadRobot(const std::string& profile_path) {
   robot.model = LoadRobotModel(urdf);
   FillFromModel(in, &robot);
   CheckProfile(in, robot.profile, robot.model);
+  PlaceOnTray(in, robot.model, &robot.profile);
   StandOnFloor(&robot);
   if (robot.profile.footprint.empty()) {
     robot.profile.footprint = OutlineOf(robot.model, robot.profile.base_link, robot.profile.joints);

@@ -1,10 +1,13 @@
 #include "hires/robot/robot_profile.h"
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "hires/base/error.h"
+#include "hires/base/rng.h"
 #include "support/temporary_folder.h"
 
 namespace hires::robot::robot_profile_test {
@@ -184,6 +187,40 @@ TEST_F(RobotProfileFile, TheModelTellsWhatTheFileLeavesOut) {
   EXPECT_EQ(robot.profile.tray_link, bare.profile.tray_link);
   EXPECT_EQ(LoadRobot(Write("urdf: robots/tricycle.urdf\ntray_link: \"\"\n")).profile.tray_link,
             "");
+}
+
+TEST_F(RobotProfileFile, ATrayThatIsNamedHasThePlaceThatABareUrdfHas) {
+  const Robot bare = LoadRobotFromUrdf(folder_.path() / "robots/tricycle.urdf");
+  const Robot named = LoadRobot(Write("urdf: robots/tricycle.urdf\ntray_link: Serving_Tray\n"));
+  EXPECT_EQ(named.hash(), bare.hash());
+  const Robot placed = LoadRobot(
+      Write("urdf: robots/tricycle.urdf\ntray_link: Serving_Tray\nobject_on_tray: {xyz: [0.0, 0.1, "
+            "0.02], rpy: [0.0, 0.0, 0.0]}\n"));
+  EXPECT_EQ(placed.profile.X_TO.translation, Eigen::Vector3d(0.0, 0.1, 0.02));
+}
+
+/// Of any link, however it is turned: upright on the middle of the top of its largest shape.
+TEST_F(RobotProfileFile, APlaceThatIsNotGivenIsOnTopOfTheNamedLink) {
+  base::Rng rng(5);
+  for (int round = 0; round < 60; ++round) {
+    const Eigen::Vector3d size(rng.Uniform(0.2, 0.8), rng.Uniform(0.2, 0.8),
+                               rng.Uniform(0.01, 0.1));
+    const double height = rng.Uniform(0.4, 1.0), yaw = rng.Uniform(-3.0, 3.0);
+    const bool is_upside_down = rng.Bernoulli(0.5);
+    const std::string deck = fmt::format(
+        "<joint name=\"j\" type=\"fixed\"><origin xyz=\"0.1 0 {}\" rpy=\"{} 0 {}\"/><parent "
+        "link=\"chassis\"/><child link=\"deck\"/></joint><link name=\"deck\"><collision>"
+        "<geometry><box size=\"{} {} {}\"/></geometry></collision></link></robot>",
+        height, is_upside_down ? M_PI : 0.0, yaw, size.x(), size.y(), size.z());
+    std::string urdf = kTricycle;
+    urdf.replace(urdf.find("</robot>"), 8, deck);
+    folder_.Write("robots/decked.urdf", urdf);
+    const Robot robot = LoadRobot(Write("urdf: robots/decked.urdf\ntray_link: deck\n"));
+    const auto X_R = ForwardKinematics(robot.model, robot.profile.joints);
+    const geometry::Pose3 X_RO = X_R[*robot.model.FindLink("deck")] * robot.profile.X_TO;
+    EXPECT_LT((X_RO.translation - Eigen::Vector3d(0.1, 0.0, height + size.z() / 2)).norm(), 1e-9);
+    EXPECT_NEAR(geometry::TiltOf(X_RO.rotation), 0.0, 1e-9);
+  }
 }
 
 TEST_F(RobotProfileFile, TheControllerLetsEveryMotionSetPassUnlessTheFileSaysLess) {
