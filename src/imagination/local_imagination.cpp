@@ -104,7 +104,8 @@ Report ImagineLocally(const RolloutSetup& setup, const std::vector<base::ActionC
                   PredictionsOf(scheduler, scheduler.RankingSoFar(), actions, false), num_threads});
     }
   }
-  return MakeReport(scheduler, actions, setup.seed, SteadySeconds() - start);
+  return MakeReport(scheduler, actions, setup.seed, SteadySeconds() - start, {},
+                    setup.uncertainty->quantities.empty());
 }
 
 }  // namespace hires::imagination

@@ -257,8 +257,9 @@ Report ImaginationDesk::Book(const SessionPtr& session) {
   for (const auto& [place, rollout] : session->rollouts) {
     if (rollout.is_kept) kept.insert({place.second, place.first});
   }
-  const Report report = imagination::MakeReport(*session->scheduler, session->actions,
-                                                session->setup->seed, took, kept);
+  const Report report =
+      imagination::MakeReport(*session->scheduler, session->actions, session->setup->seed, took,
+                              kept, session->setup->uncertainty->quantities.empty());
   base::Log(base::LogLevel::kInfo,
             fmt::format("imagination={} rollouts={} kept={}", session->command.request,
                         session->rollouts.size(), kept.size()));

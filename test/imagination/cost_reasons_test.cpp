@@ -137,6 +137,18 @@ TEST(CostSentenceTest, OfTwoThatNeverFailedTheQuickerOneIsTaken) {
   EXPECT_FALSE(answered.reasons->turning);
 }
 
+TEST(CostSentenceTest, OfOneTruthNothingStaysUnseen) {
+  const Criteria criteria = ByCost(600.0);
+  Answered answered = Ask({Times(8, Success(10.2)), Times(8, Success(22.4))}, criteria);
+  ASSERT_THAT(answered.why, HasSubstr("may have stayed unseen in 8 rollouts"));
+  answered.reasons->is_one_truth = true;
+  const std::string why =
+      WhyRecommended(answered.evidence, criteria, {"fast", "slow"}, &*answered.reasons);
+  EXPECT_THAT(why, HasSubstr("taken, 10.2 s against 22.4 s; all rollouts are of one and the same "
+                             "truth; a fall costs 600 s"));
+  EXPECT_THAT(why, Not(HasSubstr("unseen")));
+}
+
 TEST(CostSentenceTest, FewFailuresThatCannotOutweighTheSecondsAreSaidSo) {
   const Answered answered =
       Ask({Times(511, Success(10.0)) + Times(1, Fall(10.0)), Times(512, Success(200.0))},

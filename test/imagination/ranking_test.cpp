@@ -324,6 +324,36 @@ TEST(WhyRecommendedTest, NothingIsRecommended) {
   EXPECT_EQ(WhyRecommended({}, kRisk, {}), "nothing is recommended: there is no alternative");
 }
 
+TEST(WhyRecommendedTest, FailuresAreCodesAndNamesHoweverMuchIsSaidOfThem) {
+  RolloutResult blocked = NoPath(), touched = NoPath();
+  blocked.failure = {base::FailureCode::kGoalBlocked, {}, "a wall is there; choose another place"};
+  touched.failure = {base::FailureCode::kRobotCollision, {"base", "wall"}, "at (1, 2); move it"};
+  EXPECT_THAT(
+      WhyRecommended(SumUpAll({Times(8, blocked) + Times(3, touched)}), kRisk, {"slow"}),
+      HasSubstr("slow failed in 11 of 11 (goal_blocked 8, robot_collision: base, wall 3); "));
+}
+
+TEST(WhyRecommendedTest, WhatIsWantedHasAllItsDigitsAndWhatIsReachedIsLess) {
+  for (const auto& [wanted, text] : std::vector<std::pair<double, std::string>>{
+           {0.999, "99.9 %"}, {0.5, "50 %"}, {0.58, "58 %"}, {0.9995, "99.95 %"}, {0.07, "7 %"}}) {
+    for (int failed = 1; failed < 40; ++failed) {
+      const auto evidence = SumUpAll({Times(4000, Success()) + Times(100 * failed, Fall())});
+      const Criteria criteria{RankingRule::kRisk, wanted, {}};
+      const std::string why = WhyRecommended(evidence, criteria, {"slow"});
+      if (!AllFail(evidence, criteria)) continue;
+      const auto at = why.find("; at most ");
+      ASSERT_NE(at, std::string::npos) << why;
+      EXPECT_THAT(why, HasSubstr(" succeed, wanted " + text));
+      const double most = std::stod(why.substr(at + 10));
+      EXPECT_LT(most, 100.0 * wanted) << why;
+      EXPECT_GE(most, 100.0 * evidence[0].success.upper - 1e-9) << why;
+    }
+  }
+  EXPECT_THAT(
+      WhyRecommended(SumUpAll({Times(64, Success())}), {RankingRule::kRisk, 0.999, {}}, {"slow"}),
+      HasSubstr("wanted are 99.9 % of success"));
+}
+
 TEST(WhyRecommendedTest, UndecidedSaysWhatIsKnownAndHowManyWouldDecide) {
   const auto evidence = SumUpAll({Times(4, Success()), Times(2, Success()) + Times(2, Fall())});
   EXPECT_EQ(WhyRecommended(evidence, kRisk, kNames),

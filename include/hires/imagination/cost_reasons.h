@@ -55,6 +55,9 @@ struct CostReasons {
   std::map<base::FailureCode, double> prices;
   std::optional<CostComparison> next;  ///< with the next one of the order, if it is good enough
   std::optional<TurningPrice> turning;
+  /// All rollouts are of one and the same truth: how many there are says nothing of what may have
+  /// stayed unseen.
+  bool is_one_truth{false};
 };
 
 /// None where the rule is not kCost or nothing is recommended.

@@ -61,9 +61,10 @@ std::vector<Prediction> PredictionsOf(const Scheduler& scheduler, const Ranking&
                                       bool with_final_states);
 
 /// @param kept  alternative and index of rollouts that were those of an earlier request.
+/// @param is_one_truth  nothing was uncertain: see CostReasons.
 /// @pre scheduler.finished(); `actions` are its alternatives.
 Report MakeReport(const Scheduler& scheduler, const std::vector<base::ActionCall>& actions,
                   std::uint64_t seed, double wall_seconds,
-                  const std::set<std::pair<int, int>>& kept = {});
+                  const std::set<std::pair<int, int>>& kept = {}, bool is_one_truth = false);
 
 }  // namespace hires::imagination

@@ -18,6 +18,15 @@ std::string Successes(const Evidence& evidence) {
 
 std::string Rollouts(int count) { return count == 1 ? "rollout" : "rollouts"; }
 
+/// "99.9 %", with all digits.
+std::string Percent(double share) { return fmt::format("{:.13g} %", 100.0 * share); }
+
+/// Code and subjects; words for people, whole sentences, stand elsewhere in the answer.
+std::string ShortText(const base::Failure& failure) {
+  const std::string code = base::ToString(failure.code);
+  return failure.subjects.empty() ? code : code + ": " + base::Join(failure.subjects, ", ");
+}
+
 /// "object_fell 7, no_path 2", the most frequent first.
 std::string Failures(const Evidence& evidence) {
   std::vector<std::pair<base::Failure, int>> sorted(evidence.failures.begin(),
@@ -26,7 +35,7 @@ std::string Failures(const Evidence& evidence) {
                    [](const auto& a, const auto& b) { return a.second > b.second; });
   std::vector<std::string> parts;
   for (const auto& [failure, count] : sorted) {
-    parts.push_back(fmt::format("{} {}", base::ToString(failure), count));
+    parts.push_back(fmt::format("{} {}", ShortText(failure), count));
   }
   return base::Join(parts, ", ");
 }
@@ -43,13 +52,23 @@ std::string FailureText(const std::string& name, const Evidence& evidence) {
                      Failures(evidence));
 }
 
-/// "so that at most 6 % succeed, wanted 50 %": rounded up, so that it never condemns too much.
+/// Rounded up, so that it never condemns too much, and to as many digits as it takes to lie below
+/// what is wanted.  @pre share < wanted
+double RoundedUp(double share, double wanted) {
+  for (double steps = 100.0; steps < 1e15; steps *= 10.0) {
+    const double rounded = std::ceil(share * steps) / steps;
+    if (rounded < wanted) return rounded;
+  }
+  return share;
+}
+
+/// "; at most 6 % succeed, wanted 50 %"
 std::string WhyNotReached(const std::vector<Evidence>& alternatives, const Criteria& criteria) {
   if (criteria.rule == RankingRule::kThesis) return "";
   double most = 0.0;
   for (const Evidence& evidence : alternatives) most = std::max(most, evidence.success.upper);
-  return fmt::format("; at most {:.0f} % succeed, wanted {:.0f} %", std::ceil(100.0 * most),
-                     100.0 * criteria.min_success);
+  return fmt::format("; at most {} succeed, wanted {}",
+                     Percent(RoundedUp(most, criteria.min_success)), Percent(criteria.min_success));
 }
 
 std::string WhyAllFail(const std::vector<Evidence>& alternatives, const Criteria& criteria,
@@ -82,8 +101,8 @@ std::string WhyUndecided(const std::vector<Evidence>& alternatives, const Criter
                                 Successes(alternatives[i]), std::floor(100.0 * success.lower),
                                 std::ceil(100.0 * success.upper)));
   }
-  return fmt::format("nothing is recommended yet, wanted are {:.0f} % of success: {}; {}",
-                     100.0 * criteria.min_success, base::Join(parts, "; "),
+  return fmt::format("nothing is recommended yet, wanted are {} of success: {}; {}",
+                     Percent(criteria.min_success), base::Join(parts, "; "),
                      WhatWouldDecide(alternatives, criteria));
 }
 
@@ -152,27 +171,29 @@ std::string Sureness(const CostComparison& with) {
 }
 
 /// The quicker one of two whose failures do not speak against it.
-std::string WhyQuicker(const Evidence& best, const Evidence& next, const CostComparison& with) {
+std::string WhyQuicker(const Evidence& best, const Evidence& next, const CostReasons& reasons) {
+  const CostComparison& with = *reasons.next;
   if (!with.neither_failed) {
     return fmt::format(
         ", and quicker by {:.1f} s, which is more than its failures may cost beyond those of the "
         "other (at most {:.1f} s), so the quicker one is taken",
         with.time_saved, std::max(0.0, with.failures_more_upper));
   }
-  return fmt::format(
-      "; neither failed, so the quicker one is taken, {}; it costs less {}, as a failure may have "
-      "stayed unseen in {} {}",
-      Against(best.cost->mean, next.cost->mean, " s", 1), Sureness(with), best.num_rollouts,
-      Rollouts(best.num_rollouts));
+  const std::string taken = "; neither failed, so the quicker one is taken, " +
+                            Against(best.cost->mean, next.cost->mean, " s", 1);
+  if (reasons.is_one_truth) return taken + "; all rollouts are of one and the same truth";
+  return taken + fmt::format("; it costs less {}, as a failure may have stayed unseen in {} {}",
+                             Sureness(with), best.num_rollouts, Rollouts(best.num_rollouts));
 }
 
 std::string WhyCheaper(const Evidence& best, const Evidence& next, const Key& best_key,
-                       const Key& next_key, const std::optional<CostComparison>& with) {
+                       const Key& next_key, const CostReasons* reasons) {
+  const bool is_compared = reasons != nullptr && reasons->next.has_value();
   if (std::get<1>(best_key) != std::get<1>(next_key)) {
-    if (with && with->IsAlike()) return WhyQuicker(best, next, *with);
+    if (is_compared && reasons->next->IsAlike()) return WhyQuicker(best, next, *reasons);
     return ", and its expected cost is lower, " +
            Against(best.cost->mean, next.cost->mean, " s", 1) +
-           (with ? ", " + Sureness(*with) : "");
+           (is_compared && !reasons->is_one_truth ? ", " + Sureness(*reasons->next) : "");
   }
   if (std::get<2>(best_key) != std::get<2>(next_key)) {
     return fmt::format(
@@ -183,14 +204,14 @@ std::string WhyCheaper(const Evidence& best, const Evidence& next, const Key& be
 }
 
 std::string WhyBetter(const Evidence& best, const Evidence& next, const std::string& next_name,
-                      const Criteria& criteria, const std::optional<CostComparison>& with) {
+                      const Criteria& criteria, const CostReasons* reasons) {
   const Key best_key = KeyOf(best, criteria);
   const Key next_key = KeyOf(next, criteria);
   if (std::get<0>(best_key) != std::get<0>(next_key)) {
     return WhyFirst(best, next, next_name, criteria.rule);
   }
   return Common(best, next_name, criteria.rule) +
-         (criteria.rule == RankingRule::kCost ? WhyCheaper(best, next, best_key, next_key, with)
+         (criteria.rule == RankingRule::kCost ? WhyCheaper(best, next, best_key, next_key, reasons)
                                               : WhyLater(best, next, best_key, next_key));
 }
 
@@ -264,8 +285,7 @@ std::string WhyRecommended(const std::vector<Evidence>& alternatives, const Crit
   }
   const int next = Rank(alternatives, criteria)[1];
   return fmt::format("{}: {}{}", names[*best],
-                     WhyBetter(winner, alternatives[next], names[next], criteria,
-                               reasons ? reasons->next : std::nullopt),
+                     WhyBetter(winner, alternatives[next], names[next], criteria, reasons),
                      WhatSpeaksAgainst(alternatives, winner, criteria, names) +
                          WhoIsNotGoodEnough(alternatives, winner, criteria, names) +
                          WhatPricesSay(reasons, names));

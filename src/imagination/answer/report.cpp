@@ -93,7 +93,7 @@ std::vector<Prediction> PredictionsOf(const Scheduler& scheduler, const Ranking&
 
 Report MakeReport(const Scheduler& scheduler, const std::vector<base::ActionCall>& actions,
                   std::uint64_t seed, double wall_seconds,
-                  const std::set<std::pair<int, int>>& kept) {
+                  const std::set<std::pair<int, int>>& kept, bool is_one_truth) {
   HIRES_CHECK(scheduler.finished(), "there is no result yet");
   const SchedulerResult& result = *scheduler.result();
   const Ranking& ranking = result.ranking;
@@ -128,6 +128,7 @@ Report MakeReport(const Scheduler& scheduler, const std::vector<base::ActionCall
   }
   const Criteria& criteria = scheduler.params().criteria;
   report.by_cost = CostReasonsOf(PrefixesOf(scheduler, actions.size()), ranking.evidence, criteria);
+  if (report.by_cost) report.by_cost->is_one_truth = is_one_truth;
   report.why = WhyRecommended(ranking.evidence, criteria, NamesOf(actions),
                               report.by_cost ? &*report.by_cost : nullptr);
   if (report.by_cost) CallByPlace(ranking.order, &*report.by_cost);

@@ -364,7 +364,8 @@ void ImaginationClientNode::Finish(Session* session) {
   Keep(*session);
   auto report =
       imagination::MakeReport(*session->scheduler, request.actions, request.setup.seed,
-                              hires::base::SteadyNow() - session->begun, session->from_kept);
+                              hires::base::SteadyNow() - session->begun, session->from_kept,
+                              request.setup.uncertainty->quantities.empty());
   imagination::AddCaveats(request.setup, request.actions, params_.config.validated, &report);
   const hires::ImagineResult result = AnswerTo(*session->goal.getGoal(), request, setup_, report);
   replayer_.Keep({session->goal.getGoal()->request_id, session->id, session->request,
