@@ -5,6 +5,8 @@
 #include "hires/base/error.h"
 #include "hires/base/text.h"
 #include "hires/imagination/imagination_setup.h"
+#include "hires/simulation/free_start.h"
+#include "hires/translation/areas.h"
 
 namespace hires::imagination {
 namespace {
@@ -52,6 +54,17 @@ void AddInitialObjects(const ImaginationSetup& setup, world::WorldState* state) 
   state->objects.insert(state->objects.begin(), objects.begin(), objects.end());
 }
 
+/// Of what the atoms put on the tray.
+void RefuseOffTray(const ImaginationSetup& setup, const std::vector<base::Atom>& atoms,
+                   const StartState& start) {
+  for (const base::Atom& atom : atoms) {
+    const bool is_on_tray = base::ToLower(atom.predicate) == "on" && atom.arguments.size() == 2 &&
+                            base::ToLower(atom.arguments[1]) == translation::kTrayArea;
+    const world::ObjectState* object = is_on_tray ? start.world.Find(atom.arguments[0]) : nullptr;
+    if (object != nullptr) simulation::RefuseOffTray(*setup.scene, start.robot, *object);
+  }
+}
+
 void Put(const ImaginationSetup& setup, const PutObject& put, world::WorldState* state) {
   if (state->Find(put.object) != nullptr) {
     throw base::ConfigError(
@@ -74,6 +87,7 @@ StartState StartOnTray(const ImaginationSetup& setup, const geometry::Pose2& X_M
     start.world.objects.push_back(MakeObject(
         setup, objects[i],
         geometry::Lift(start.robot.X_MB) * setup.scene->X_BO * geometry::Lift({0.0, y, 0.0})));
+    simulation::RefuseOffTray(*setup.scene, start.robot, start.world.objects.back());
   }
   return start;
 }
@@ -95,6 +109,7 @@ StartState MakeStartState(const ImaginationSetup& setup, const std::vector<base:
   }
   const translation::GeometricState state = translation::StateOf(setup.translator, nullptr, atoms);
   StartState start{state.world, state.robot};
+  RefuseOffTray(setup, atoms, start);
   for (const PutObject& object : put) Put(setup, object, &start.world);
   AddInitialObjects(setup, &start.world);
   return start;

@@ -1,11 +1,21 @@
 #include "hires/simulation/free_start.h"
 
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
 #include <optional>
 
+#include "hires/base/error.h"
 #include "hires/robot/posture.h"
+#include "simulation/start_checks.h"
 
 namespace hires::simulation {
 namespace {
+
+using Eigen::Vector2d;
+using Eigen::Vector3d;
+using geometry::Pose3;
 
 /// Of the robot with these joints; nothing where that is the scene's own clearance.
 std::optional<RobotClearance> ClearanceFor(const Scene& scene,
@@ -15,7 +25,123 @@ std::optional<RobotClearance> ClearanceFor(const Scene& scene,
   return RobotClearance(FrozenShapes(scene.robot, posture), scene.world);
 }
 
+constexpr double kLevel = 0.02;  // [rad] a plate that is tilted by less counts as level
+
+/// The largest shape from above of the link that carries things.
+struct TrayPlate {
+  const geometry::Collision* shape{nullptr};  // in the link's frame
+  Pose3 X_BL, X_BS;
+  geometry::Aabb bounds_B;
+};
+
+std::optional<TrayPlate> PlateOf(const robot::Robot& robot, const robot::JointPositions& posture) {
+  const auto link = robot.model.FindLink(robot.profile.tray_link);
+  if (!link) return std::nullopt;
+  const auto X_RL = robot::ForwardKinematics(robot.model, posture);
+  const Pose3 X_BL = X_RL[*robot.model.FindLink(robot.profile.base_link)].Inverse() * X_RL[*link];
+  std::optional<TrayPlate> plate;
+  double largest = 0.0;
+  for (const geometry::Collision& shape : robot.model.links[*link].collisions) {
+    const Pose3 X_BS = X_BL * shape.X_BS;
+    const geometry::Aabb bounds = geometry::BoundsOf(shape.shape, X_BS);
+    const Vector3d size = bounds.upper - bounds.lower;
+    if (size.x() * size.y() <= largest) continue;
+    largest = size.x() * size.y();
+    plate = TrayPlate{&shape, X_BL, X_BS, bounds};
+  }
+  return plate;
+}
+
+/// Out of the face that shows most of itself from above, in the base frame.
+Vector3d UpOf(const TrayPlate& plate) {
+  const Eigen::Matrix3d R = plate.X_BS.rotation.toRotationMatrix();
+  const geometry::Aabb bounds_S = geometry::BoundsOf(plate.shape->shape, {});
+  const Vector3d size = bounds_S.upper - bounds_S.lower;
+  int upper = 0;
+  Vector3d(R.row(2).transpose().cwiseAbs().cwiseQuotient(size)).maxCoeff(&upper);
+  return R.col(upper) * (R(2, upper) < 0.0 ? -1.0 : 1.0);
+}
+
+/// [m] from the surface of a tilted plate up to p_B; of the plane through its middle.
+double HeightAbove(const TrayPlate& plate, const Vector3d& p_B) {
+  const Vector3d up = UpOf(plate);
+  const Vector3d up_S = plate.X_BS.rotation.inverse() * up;
+  const geometry::Aabb bounds_S = geometry::BoundsOf(plate.shape->shape, {});
+  const Vector3d top_S = 0.5 * (bounds_S.lower + bounds_S.upper) +
+                         0.5 * up_S.cwiseAbs().dot(bounds_S.upper - bounds_S.lower) * up_S;
+  return up.dot(p_B - plate.X_BS * top_S) / up.z();
+}
+
+std::string Text(const Vector3d& p) {
+  const auto told = [](double value) { return std::abs(value) < 5e-4 ? 0.0 : value; };
+  return fmt::format("({:.3f}, {:.3f}, {:.3f})", told(p.x()), told(p.y()), told(p.z()));
+}
+
+/// "object_on_tray in the profile of 'cart' is (0.000, 0.300, 0.020) m, the plate of its
+/// 'load_deck' reaches from ... to ...; ..."
+std::string PlateText(const robot::Robot& robot, const TrayPlate& plate, const Vector3d& p_BO) {
+  const Vector3d p_LO = plate.X_BL.Inverse() * p_BO, p_LTray = robot.profile.X_TO.translation;
+  const geometry::Aabb bounds = geometry::BoundsOf(plate.shape->shape, plate.shape->X_BS);
+  const std::string moved = (p_LO - p_LTray).norm() < 1e-6
+                                ? ""
+                                : fmt::format(", the place of this one of several {}", Text(p_LO));
+  return fmt::format(
+      "object_on_tray of robot '{}' is {} m{}, the plate of its '{}' reaches from {} to {} m",
+      robot.model.name, Text(p_LTray), moved, robot.profile.tray_link, Text(bounds.lower),
+      Text(bounds.upper));
+}
+
+/// [m] from above; 0 over the plate.
+double Beside(const TrayPlate& plate, const Vector2d& p_B) {
+  const auto outline = geometry::OutlineInBand(plate.shape->shape, plate.X_BS,
+                                               plate.bounds_B.lower.z(), plate.bounds_B.upper.z());
+  return outline ? geometry::Distance(*outline, geometry::Polygon{p_B}) : 0.0;
+}
+
+[[noreturn]] void FailTilted(const robot::Robot& robot, const TrayPlate& plate,
+                             const world::ObjectState& object, double tilt) {
+  throw base::ConfigError(fmt::format(
+      "object '{}' cannot begin on the tray: the plate of '{}' of robot '{}' is tilted by {:.2f} "
+      "rad, wanted a level one ({:g} rad at most); level the joint in its URDF (or in 'joints' of "
+      "its profile), or have object_on_tray and tray_link name another place",
+      object.name, robot.profile.tray_link, robot.model.name, tilt, kLevel));
+}
+
 }  // namespace
+
+void RefuseOffTray(const Scene& scene, const robot::RobotState& start,
+                   const world::ObjectState& object) {
+  const robot::Robot& robot = scene.robot;
+  const robot::JointPositions posture = robot::PostureOf(robot, start.joints);
+  const auto plate = PlateOf(robot, posture);
+  if (!plate) return;
+  const auto model = scene.world.ModelOf(object);
+  const Pose3 X_BO = geometry::Lift(start.X_MB).Inverse() * object.X_MO;
+  geometry::Aabb bounds;
+  for (const geometry::Collision& shape : model->collisions) {
+    bounds.Include(geometry::BoundsOf(shape.shape, X_BO * shape.X_BS));
+  }
+  const Vector2d centre = 0.5 * (bounds.lower + bounds.upper).head<2>();
+  const double beside =
+      std::min(Beside(*plate, centre), Beside(*plate, X_BO.translation.head<2>()));
+  const double tilt = std::acos(std::min(1.0, UpOf(*plate).z()));
+  const std::vector<geometry::Collision> shapes_B = FrozenShapes(robot, posture);
+  if (tilt > kLevel && beside == 0.0) {
+    const bool is_inside = FindInside(model->collisions, X_BO, shapes_B, {}).has_value();
+    const double gap = HeightAbove(*plate, {centre.x(), centre.y(), bounds.lower.z()});
+    if (is_inside || gap > kStartSlack) FailTilted(robot, *plate, object, tilt);
+  }
+  if (StandsOn(shapes_B, model->collisions, X_BO)) return;
+  const double above = bounds.lower.z() - plate->bounds_B.upper.z();
+  const std::string where = beside > 0.0
+                                ? fmt::format("{:.3f} m beside the tray's plate", beside)
+                                : fmt::format("{:.3f} m {} the top of the tray's plate",
+                                              std::abs(above), above > 0.0 ? "above" : "below");
+  throw base::ConfigError(
+      fmt::format("object '{}' would begin {}: {}; give a place in the middle of its top, or leave "
+                  "object_on_tray out, which is that",
+                  object.name, where, PlateText(robot, *plate, X_BO.translation)));
+}
 
 Variation WithFreeStart(Variation variation, const Scene& scene, const robot::RobotState& start) {
   const auto own = ClearanceFor(scene, start.joints);

@@ -14,10 +14,9 @@ namespace {
 
 using geometry::Pose3;
 
-constexpr double kRestingGap = 0.06;  // [m] an object this far above the tray falls onto it
-constexpr double kFarAway = 1000.0;   // [m]
-constexpr double kStiffest = 2.0;     // half of what diverges
-constexpr double kUnitSlack = 1e-6;   // how far a quaternion's length may be from 1
+constexpr double kFarAway = 1000.0;  // [m]
+constexpr double kStiffest = 2.0;    // half of what diverges
+constexpr double kUnitSlack = 1e-6;  // how far a quaternion's length may be from 1
 
 /// Loop and leaning are integrated by the semi-implicit Euler method: x'' = -w^2 x - 2 zeta w x'
 /// grows without bounds from (w dt)^2 + 4 zeta w dt = 4 on.
@@ -102,12 +101,14 @@ bool StandsOn(const std::vector<geometry::Collision>& robot_B,
     object_bounds.Include(geometry::BoundsOf(shape.shape, X_BO * shape.X_BS));
   }
   const double bottom = object_bounds.lower.z();
+  const Eigen::Vector2d middle = 0.5 * (object_bounds.lower + object_bounds.upper).head<2>();
   return std::any_of(robot_B.begin(), robot_B.end(), [&](const geometry::Collision& part) {
     const geometry::Aabb bounds = geometry::BoundsOf(part.shape, part.X_BS);
     if (std::abs(bounds.upper.z() - bottom) > kRestingGap) return false;
     const auto outline =
         geometry::OutlineInBand(part.shape, part.X_BS, bounds.lower.z(), bounds.upper.z());
-    return outline && geometry::Contains(*outline, X_BO.translation.head<2>());
+    return outline && (geometry::Contains(*outline, X_BO.translation.head<2>()) ||
+                       geometry::Contains(*outline, middle));
   });
 }
 

@@ -12,6 +12,7 @@
 namespace hires::simulation {
 
 constexpr double kStartSlack = 0.005;  ///< [m] bodies may overlap this much at the start
+constexpr double kRestingGap = 0.06;   ///< [m] an object this far above the tray falls onto it
 
 /// Does a shape of `a` reach more than the slack into a shape of `b`? Shapes count as upright
 /// prisms, as in RobotClearance.
@@ -33,7 +34,8 @@ std::optional<Inside> FindInside(const std::vector<geometry::Collision>& object,
 [[noreturn]] void FailInsideRobot(const world::ObjectState& object, const world::World& world,
                                   const Inside& inside);
 
-/// Does the object's lowest point lie on top of one of the robot's shapes?
+/// Does the object's lowest point lie on top of one of the robot's shapes? Its origin, or the
+/// middle of its outline, is over that shape.
 bool StandsOn(const std::vector<geometry::Collision>& robot_B,
               const std::vector<geometry::Collision>& object, const geometry::Pose3& X_BO);
 

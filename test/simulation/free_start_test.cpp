@@ -1,8 +1,16 @@
 #include "hires/simulation/free_start.h"
 
+#include <fmt/format.h>
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
+
+#include "hires/base/error.h"
+#include "hires/base/rng.h"
 #include "simulation/arm_scene.h"
+#include "support/rounds.h"
 
 namespace hires::simulation::free_start_test {
 namespace {
@@ -51,6 +59,100 @@ TEST(FreeStartTest, ARobotThatTouchesSomethingAnywayHasNoOffset) {
   robot::RobotState start;
   start.X_MB = {1.2, test_arm::kToolY, 0.0};
   ExpectOffset(WithFreeStart(Shifted(0.02, 0.0, 0.1), *SceneWithPost(), start), 0.0, 0.0, 0.0);
+}
+
+// ------------------------------------------------------------------------- places on the tray
+
+using ::testing::AllOf;
+using ::testing::HasSubstr;
+
+constexpr double kHigh = 0.7;  // [m] height of a tray that nothing else of the robot comes near
+
+/// The plate is 0.25 x 0.50 m. Tilted round the robot's y axis.
+std::shared_ptr<const Scene> WithTray(const geometry::Pose3& X_TO, double tilt = 0.0) {
+  robot::Robot robot = test_support::TrayRobot();
+  robot.model.links[1].joint->X_PJ = {{0.3, 0.0, kHigh}, geometry::RotationFromRpy(0.0, tilt, 0.0)};
+  robot.profile.X_TO = X_TO;
+  world::World room = test_support::Room();
+  world::ObjectModel corner = test_support::Mill("corner");  // its origin is on its rim
+  for (geometry::Collision& shape : corner.collisions) shape.X_BS.translation.x() += 0.037;
+  test_support::AddModel(&room, corner);
+  return MakeScene(room, robot);
+}
+
+std::string WhyOff(const Scene& scene, const std::string& model) {
+  const robot::RobotState start = test_support::StandingAt({2.0, 2.0, 0.7});
+  world::ObjectState object;
+  object.name = "load";
+  object.model = model;
+  object.X_MO = geometry::Lift(start.X_MB) * scene.X_BO;
+  try {
+    RefuseOffTray(scene, start, object);
+  } catch (const base::ConfigError& error) {
+    return error.what();
+  }
+  return "";
+}
+
+TEST(RefuseOffTrayTest, APlaceIsRefusedWhereNothingCarriesTheMiddleOfTheThing) {
+  base::Rng rng(11);
+  int beside = 0, above = 0, below = 0, good = 0;
+  for (int round = 0; round < hires::test_support::Rounds(1200); ++round) {
+    const geometry::Pose3 X_TO =
+        geometry::Lift({rng.Uniform(-0.2, 0.2), rng.Uniform(-0.4, 0.4), rng.Uniform(-3.0, 3.0)},
+                       rng.Uniform(-0.15, 0.15));
+    const std::string model = rng.Bernoulli(0.5) ? "mill" : "corner";
+    const Eigen::Vector3d middle = X_TO * Eigen::Vector3d(model == "mill" ? 0.0 : 0.037, 0.0, 0.0);
+    const auto is_over = [](const Eigen::Vector3d& p) {
+      return std::abs(p.x()) < 0.125 && std::abs(p.y()) < 0.25;
+    };
+    const std::string why = WhyOff(*WithTray(X_TO), model);
+    const bool is_beside = !is_over(middle) && !is_over(X_TO.translation);
+    if (std::abs(middle.z()) < 0.06 && !is_beside) {
+      EXPECT_EQ(why, "");
+      ++good;
+      continue;
+    }
+    EXPECT_THAT(why, AllOf(HasSubstr("object 'load' would begin"), HasSubstr("object_on_tray"),
+                           HasSubstr("(-0.125, -0.250, -0.020) to (0.125, 0.250, 0.000) m")));
+    EXPECT_THAT(why, HasSubstr(is_beside          ? "m beside the tray's plate"
+                               : middle.z() > 0.0 ? "m above the top of the tray's plate"
+                                                  : "m below the top of the tray's plate"));
+    ++(is_beside ? beside : middle.z() > 0.0 ? above : below);
+  }
+  EXPECT_GT(std::min({beside, above, below, good}), 10);
+}
+
+TEST(RefuseOffTrayTest, HowFarBesideIsSaid) {
+  EXPECT_THAT(WhyOff(*WithTray(geometry::Lift({0.0, 0.31, 0.0})), "mill"),
+              AllOf(HasSubstr("0.060 m beside"), HasSubstr("is (0.000, 0.310, 0.000) m")));
+}
+
+TEST(RefuseOffTrayTest, ATiltedPlateIsNamed) {
+  base::Rng rng(12);
+  for (int round = 0; round < hires::test_support::Rounds(400); ++round) {
+    const double tilt = rng.Uniform(-1.2, 1.2);
+    const geometry::Pose3 at_rest = geometry::Lift({rng.Uniform(-0.1, 0.1), 0.0, 0.0});
+    geometry::Pose3 upright;  // over the highest edge of the plate, as where no place is given
+    upright.rotation = geometry::RotationFromRpy(0.0, -tilt, 0.0);
+    upright.translation =
+        upright.rotation * Eigen::Vector3d(0.0, 0.0, 0.125 * std::sin(std::abs(tilt)));
+    const std::string why = WhyOff(*WithTray(at_rest, tilt), "mill");
+    const std::string tilted = fmt::format("is tilted by {:.2f} rad", std::abs(tilt));
+    if (std::abs(tilt) < 0.02) EXPECT_EQ(why, "") << tilt;
+    if (std::abs(tilt) < 0.09) continue;  // it may begin at rest
+    for (const geometry::Pose3& place : {at_rest, upright}) {
+      EXPECT_THAT(WhyOff(*WithTray(place, tilt), "mill"),
+                  AllOf(HasSubstr(tilted), HasSubstr("object_on_tray")))
+          << tilt;
+    }
+  }
+}
+
+TEST(RefuseOffTrayTest, OtherPartsOfTheRobotCarryToo) {
+  // 0.02 m above the box of the base, 0.35 m beside and below the plate.
+  const auto scene = WithTray({{-0.3, 0.2, 0.32 - kHigh}, Eigen::Quaterniond::Identity()});
+  EXPECT_EQ(WhyOff(*scene, "mill"), "");
 }
 
 }  // namespace

@@ -28,8 +28,8 @@ struct PutObject {
 
 /// The robot with objects on its tray, and nothing else: the first in the middle, the next ones to
 /// its right and left, 0.13 m apart (the slots of the tray pick and place action).
-/// @throws base::ConfigError for an unknown object, more than three objects, or a robot without a
-/// tray.
+/// @throws base::ConfigError for an unknown object, more than three objects, a robot without a
+/// tray, and as simulation::RefuseOffTray.
 StartState StartOnTray(const ImaginationSetup& setup, const geometry::Pose2& X_MB,
                        const std::vector<std::string>& objects);
 
@@ -41,7 +41,8 @@ StartState MakeStartState(const ImaginationSetup& setup, const std::string& area
 /// From a projected symbolic state, as translation::StateOf reads it (RobotAt, HasArmPosture,
 /// HasTorsoPosture, Holding, On), and objects at poses of their own. Objects of the world file
 /// that neither names stand where it says.
-/// @throws base::ConfigError naming the atom or object and what is wrong with it.
+/// @throws base::ConfigError naming the atom or object and what is wrong with it; of what is put on
+/// the tray as simulation::RefuseOffTray.
 StartState MakeStartState(const ImaginationSetup& setup, const std::vector<base::Atom>& atoms,
                           const std::vector<PutObject>& put = {});
 
