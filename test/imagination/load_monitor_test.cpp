@@ -4,8 +4,10 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <optional>
 
 #include "hires/imagination/rollout.h"
+#include "support/rounds.h"
 #include "support/scenes.h"
 
 namespace hires::imagination::load_monitor_test {
@@ -129,6 +131,72 @@ TEST(LoadMonitorTest, WhatSlidesFarEnoughHasFallen) {
   EXPECT_EQ(watched.monitor.falls(), 1);
   EXPECT_EQ(ToString(watched.monitor.WhyNotWell()), "object_slid: load0");
   EXPECT_LT(watched.monitor.max_tilt(), 0.1);
+}
+
+/// A puck on the tray that chance throws while it settles: it stays there, or comes to lie or to
+/// stand elsewhere.
+struct Thrown {
+  explicit Thrown(base::Rng rng, const RolloutParams& rollout = {}) : params(rollout) {
+    world::World room = hires::test_support::Room();
+    hires::test_support::AddModel(&room, hires::test_support::Mill("puck", 0.03, 0.06, 0.3, 0.3));
+    world::ObjectState puck = OnTray("Puck1", "puck", kStart);
+    const double direction = rng.Uniform(-M_PI, M_PI), speed = rng.Uniform(0.0, 4.0);
+    puck.V_MO.linear = speed * Eigen::Vector3d(std::cos(direction), std::sin(direction), 0.0);
+    simulator.emplace(simulation::MakeScene(room, hires::test_support::TrayRobot()),
+                      simulation::Variation{}, world::WorldState{{puck}}, StandingAt(kStart),
+                      base::Rng(1));
+    for (int step = 0; step < 1500; ++step) simulator->Step();
+    X_BO = {geometry::Lift(kStart).Inverse() * puck.X_MO};
+    // The top of the base's box is at 0.30 m, that of the tray 0.05 m higher.
+    is_on_robot = simulator->PoseOf(0).translation.z() > 0.29;
+    tilt = geometry::TiltOf(simulator->PoseOf(0).rotation);
+    monitor.emplace(&*simulator, params, standing, Purpose{}, X_BO);
+  }
+
+  RolloutParams params;
+  world::StandingCriterion standing;
+  std::optional<RobotSimulator> simulator;
+  std::vector<geometry::Pose3> X_BO;
+  std::optional<LoadMonitor> monitor;
+  bool is_on_robot{false};  // when it has settled
+  double tilt{0.0};         // then
+};
+
+TEST(LoadMonitorTest, WhatFellOffTheRobotWhileItSettledHasFallenUprightOrNot) {
+  int stayed = 0, stands_elsewhere = 0;
+  for (int round = 0; round < hires::test_support::Rounds(120); ++round) {
+    Thrown thrown(base::Rng(3).Fork(round));
+    if (thrown.tilt > 0.1 && thrown.tilt < 0.6) continue;  // it leans against something
+    const bool is_well = thrown.tilt <= 0.1 && thrown.is_on_robot;
+    LoadMonitor& monitor = *thrown.monitor;
+    for (int look = 0; look < 3; ++look) {
+      monitor.Look();
+      for (int step = 0; step < 5; ++step) thrown.simulator->Step();
+    }
+    monitor.Conclude();
+    EXPECT_TRUE(monitor.watches_something());
+    EXPECT_EQ(monitor.falls(), is_well ? 0 : 1) << "round " << round;
+    EXPECT_EQ(ToString(monitor.WhyNotWell()), is_well ? "" : "object_fell: puck1");
+    EXPECT_EQ(monitor.Down().size(), is_well ? 0u : 1u);
+    stayed += is_well ? 1 : 0;
+    stands_elsewhere += !is_well && thrown.tilt <= 0.1 ? 1 : 0;
+  }
+  EXPECT_GT(stayed, 1);
+  EXPECT_GT(stands_elsewhere, 1) << "what lies was always told";
+}
+
+TEST(LoadMonitorTest, WhatFellWhileItSettledIsPutBack) {
+  RolloutParams params;
+  params.put_back = true;
+  int put_back = 0;
+  for (int round = 0; round < 30; ++round) {
+    Thrown thrown(base::Rng(3).Fork(round), params);
+    if (thrown.is_on_robot || thrown.tilt > 0.1) continue;
+    EXPECT_EQ(thrown.monitor->falls(), 1);
+    EXPECT_NEAR(thrown.simulator->PoseOf(0).translation.z(), hires::test_support::kTrayTop, 0.001);
+    ++put_back;
+  }
+  EXPECT_GT(put_back, 0);
 }
 
 TEST(LoadMonitorTest, PutBackItStandsAndCountsAgain) {

@@ -8,9 +8,11 @@
 #include <vector>
 
 #include "hires/imagination/evidence.h"
+#include "hires/simulation/fall_watch.h"
 #include "imagination/room_rollouts.h"
 #include "imagination/same_bits.h"
 #include "support/messages.h"
+#include "support/rounds.h"
 
 namespace hires::imagination::rollout_test {
 namespace {
@@ -103,6 +105,55 @@ TEST(RolloutTest, EveryLoadThatFallsCounts) {
   setup.world_state.objects.push_back(
       OnTray("second", "tower", setup.robot_state.X_MB, {0.0, 0.15}));
   EXPECT_EQ(Play(setup, kFast).falls, 2);
+}
+
+/// Things in the way of a drive that does not look, and under whose belly they hardly fit: it runs
+/// over some, and some of those gain energy that nothing gave them.
+TEST(RolloutTest, WhatWasKnockedOverBeforePhysicsBrokeCounts) {
+  base::Rng rng(21);
+  int broken_after = 0;
+  for (int round = 0; round < hires::test_support::Rounds(240); ++round) {
+    world::World room = Room();
+    const double radius = rng.Uniform(0.025, 0.05);
+    hires::test_support::AddModel(
+        &room, hires::test_support::Mill("thing", rng.Uniform(0.15, 0.4), radius));
+    robot::Robot robot = TrayRobot();
+    const double belly = 2.0 * radius - rng.Uniform(0.0, 0.02);
+    robot.model.links[0].collisions[0] = hires::test_support::Shape(
+        "base", geometry::Box{{0.6, 0.5, 0.3 - belly}}, {0.0, 0.0, 0.5 * (0.3 + belly)});
+    RolloutSetup setup = RoomRollouts(room, "", "none", robot);
+    world::ObjectState thing;
+    thing.name = "Thing1";
+    thing.model = "thing";
+    thing.X_MO.translation = {2.2, 2.0 + rng.Uniform(-0.3, 0.3), 0.0002};
+    setup.world_state.objects = {thing};
+    bool is_down = false, is_broken = false, is_down_before = false;
+    simulation::FallWatch watch(setup.standing);
+    RolloutHooks hooks;
+    hooks.on_look = [&](const simulation::RobotSimulator& simulator) {
+      if (simulator.time() <= setup.params.settling_time + 0.0015) {  // it began again
+        watch = simulation::FallWatch(setup.standing);
+        is_down = is_broken = is_down_before = false;
+      }
+      if (simulator.GetWorldState().objects.empty()) return;
+      if (simulator.broken_object() && !is_broken) {
+        is_broken = true;
+        is_down_before = is_down;
+      }
+      watch.Look(simulator, 0);
+      is_down = watch.detector().is_down();
+    };
+    const auto result = PlayRollout(setup, kBlind, 0, hooks);
+    ASSERT_TRUE(result);
+    if (!is_broken) continue;
+    EXPECT_EQ(ToString(result->failure.code), is_down_before ? "knocked_over" : "physics_broke")
+        << "round " << round;
+    if (!is_down_before) continue;
+    EXPECT_EQ(result->failure.subjects, std::vector<std::string>{"thing1"});
+    EXPECT_EQ(result->falls, 1);
+    ++broken_after;
+  }
+  EXPECT_GT(broken_after, 0) << "nothing was shown";
 }
 
 TEST(RolloutTest, TimeIsUp) {

@@ -28,10 +28,32 @@ std::string CauseNow(const simulation::RobotSimulator& simulator) {
   return "floor";
 }
 
+bool FellWhileSettling(const simulation::RobotSimulator& simulator, int object,
+                       const Pose3& X_BOstart, const world::StandingCriterion& standing) {
+  const std::vector<int>& carried = simulator.carried();
+  if (std::count(carried.begin(), carried.end(), object) == 0) return false;
+  const Pose3 X_MO = simulator.PoseOf(object);
+  if (!world::IsUpright(standing, X_MO) || simulator.StandsOnRobot(object)) return false;
+  const Pose3 X_BO = simulator.X_MB().Inverse() * X_MO;
+  return world::IsAway(standing, world::DepartureFrom(X_BOstart, X_BO));
+}
+
 LoadMonitor::LoadMonitor(simulation::RobotSimulator* simulator, const RolloutParams& params,
-                         const world::StandingCriterion& standing, const Purpose& purpose)
+                         const world::StandingCriterion& standing, const Purpose& purpose,
+                         const std::vector<Pose3>& X_BOstart)
     : simulator_(simulator), params_(params), standing_(standing), purpose_(purpose) {
   Sort(purpose);
+  if (!X_BOstart.empty()) NoteFallsWhileSettling(X_BOstart);
+}
+
+void LoadMonitor::NoteFallsWhileSettling(const std::vector<Pose3>& X_BOstart) {
+  for (Object& object : objects_) {
+    if (!FellWhileSettling(*simulator_, object.index, X_BOstart[object.index], standing_)) continue;
+    object.fell_while_settling = true;
+    ++falls_;
+    NoteFall(FailureOf(object, Fall::kDropped));
+    if (params_.put_back && object.is_load) PutBackIfDown(&object);
+  }
 }
 
 void LoadMonitor::Sort(const Purpose& purpose) {
@@ -76,7 +98,7 @@ void LoadMonitor::LookAt(Object* object) {
     return;
   }
   tilt_ = std::max(tilt_, object->watch.detector().now().tilt);
-  if (fall != Fall::kNone) ++falls_;
+  if (fall != Fall::kNone && !object->fell_while_settling) ++falls_;
   if (params_.put_back && object->is_load) PutBackIfDown(object);
 }
 
@@ -85,7 +107,9 @@ void LoadMonitor::PutBackIfDown(Object* object) {
   const world::FallDetector& detector = object->watch.detector();
   const world::Departure& now = detector.now();
   const bool lies = now.tilt > params_.put_back_tilt;
-  if (!detector.is_down() || !(lies || world::IsAway(standing_, now))) return;
+  const bool is_down = detector.is_down() && (lies || world::IsAway(standing_, now));
+  if (!is_down && !object->fell_while_settling) return;
+  object->fell_while_settling = false;
   simulator_->PutBack(object->index);
   object->watch.Reset();
 }
@@ -148,7 +172,9 @@ std::vector<std::string> LoadMonitor::KnockedOver() const {
 std::vector<std::string> LoadMonitor::Down() const {
   std::vector<std::string> names;
   for (const Object& object : objects_) {
-    if (object.watch.detector().is_down()) names.push_back(object.name);
+    if (object.watch.detector().is_down() || object.fell_while_settling) {
+      names.push_back(object.name);
+    }
   }
   return names;
 }

@@ -17,6 +17,13 @@ struct RolloutParams;
 /// "accelerating", "turning", or else "floor".
 std::string CauseNow(const simulation::RobotSimulator& simulator);
 
+/// Whether a thing that stood on the robot at the start has fallen off before the action began: it
+/// stands on no part of it any more, nor where it was. Upright as it may be; what lies is the
+/// FallWatch's to tell.
+/// @param X_BOstart  where it began in the base frame, nominally.
+bool FellWhileSettling(const simulation::RobotSimulator& simulator, int object,
+                       const geometry::Pose3& X_BOstart, const world::StandingCriterion& standing);
+
 /// Watches the objects that an action is about, and those that it should leave alone.
 ///
 /// Its concern are the objects that stand on the robot or are in its hands at the start, and the
@@ -26,9 +33,14 @@ std::string CauseNow(const simulation::RobotSimulator& simulator);
 /// are about samples.
 class LoadMonitor {
  public:
-  /// @pre simulator and params outlive the monitor. The first look finds things where they stand.
+  /// The first look finds things where they stand. What fell off the robot while it settled has
+  /// fallen already.
+  /// @param X_BOstart  where all objects began in the base frame, nominally; none: they have not
+  ///                   settled since.
+  /// @pre simulator and params outlive the monitor.
   LoadMonitor(simulation::RobotSimulator* simulator, const RolloutParams& params,
-              const world::StandingCriterion& standing, const Purpose& purpose = {});
+              const world::StandingCriterion& standing, const Purpose& purpose = {},
+              const std::vector<geometry::Pose3>& X_BOstart = {});
 
   void Look();  ///< call every world::kFallLookInterval
   /// One sample of Eq. 5.1, of the object of concern that leans most; none if there is no such
@@ -76,6 +88,7 @@ class LoadMonitor {
     bool is_load;      // stands on the robot and is not to be taken from there
     bool was_held;     // at the start
     simulation::FallWatch watch;
+    bool fell_while_settling{false};
   };
   struct Bystander {
     int index;
@@ -83,6 +96,7 @@ class LoadMonitor {
     simulation::FallWatch watch;
   };
   void Sort(const Purpose& purpose);
+  void NoteFallsWhileSettling(const std::vector<geometry::Pose3>& X_BOstart);
   void LookAt(Object* object);
   void NoteFall(const base::Failure& fall);
   void PutBackIfDown(Object* object);

@@ -31,6 +31,16 @@ Purpose PurposeIn(const RolloutSetup& setup, const base::ActionCall& action) {
   return purpose;
 }
 
+/// Of all objects, in the base frame.
+std::vector<geometry::Pose3> NominalStarts(const RolloutSetup& setup) {
+  const geometry::Pose3 X_BM = geometry::Lift(setup.robot_state.X_MB).Inverse();
+  std::vector<geometry::Pose3> X_BO;
+  for (const world::ObjectState& object : setup.world_state.objects) {
+    X_BO.push_back(X_BM * object.X_MO);
+  }
+  return X_BO;
+}
+
 /// One play, from settling to the end.
 class Player {
  public:
@@ -48,6 +58,7 @@ class Player {
         simulator_(setup.scene, variation, setup.world_state, setup.robot_state,
                    rng.Fork(kSimulator), setup.physics, LevelFor(*setup.skills, action)),
         floor_(*setup.scene, setup.world_state.objects),
+        X_BOstart_(NominalStarts(setup)),
         drives_(skills::SpecOf(*setup.skills, action).driving != actions::Driving::kNone),
         driving_(setup.skills->driving) {
     simulator_.Remember(KnownAtStart(setup, variation, simulator_));
@@ -56,7 +67,7 @@ class Player {
   /// Nothing if it is cancelled, or comes near what is left out.
   std::optional<RolloutResult> Play(const RolloutHooks& hooks) {
     if (!Settle()) return std::nullopt;
-    LoadMonitor monitor(&simulator_, params_, standing_, purpose_);
+    LoadMonitor monitor(&simulator_, params_, standing_, purpose_, X_BOstart_);
     const double start = next_cycle_ = start_ = simulator_.time();
     skills::Status status;
     const double half_step = 0.5 * simulator_.time_step();
@@ -80,8 +91,7 @@ class Player {
       }
       if (simulator_.contact()) status = skills::Failed(Collision());
       if (monitor.is_lost()) status = skills::Failed(monitor.why_lost());
-      // What is down may be run over, and jump: the fall came before, and counts.
-      is_void_ = is_void_ || (simulator_.broken_object() && monitor.falls() == 0);
+      NoteBroken(monitor);
       if (is_void_) status = skills::Failed(Code::kPhysicsBroke);
       if (elapsed >= params_.time_limit) status = skills::Failed(Code::kTimedOut);
     }
@@ -129,6 +139,16 @@ class Player {
       if (hooks.on_late_cycle) hooks.on_late_cycle(simulator_, variation_.late_cycle_delay);
     }
     return status;
+  }
+
+  /// What is down may be run over, and jump: the fall came before, and counts, be it that of a load
+  /// or of what was knocked over.
+  void NoteBroken(const LoadMonitor& monitor) {
+    if (is_broken_ || !simulator_.broken_object()) return;
+    is_broken_ = true;
+    if (monitor.falls() > 0) return;
+    down_before_ = monitor.KnockedOver();
+    is_void_ = down_before_.empty();
   }
 
   /// Of a drive that came no further, from when on and what would help. Others are left alone.
@@ -186,6 +206,11 @@ class Player {
     result_.action_finished = status.progress == skills::Progress::kSucceeded;
     result_.nothing_watched = !monitor.watches_something();
     result_.failure = result_.action_finished ? monitor.WhyNotWell() : status.failure;
+    result_.falls = monitor.falls();
+    if (!down_before_.empty()) {  // what fell after that may have been thrown
+      if (result_.action_finished) result_.failure = {Code::kKnockedOver, down_before_};
+      result_.falls = static_cast<int>(down_before_.size());
+    }
     result_.outcome = !result_.failure                          ? Outcome::kSucceeded
                       : result_.failure.code == Code::kTimedOut ? Outcome::kTimedOut
                                                                 : Outcome::kFailed;
@@ -193,7 +218,6 @@ class Player {
       result_.outcome = Outcome::kFailed;
       result_.failure = Code::kNoSamples;
     }
-    result_.falls = monitor.falls();
     if (is_void_) {
       const int broken = *simulator_.broken_object();
       const std::string name = simulator_.GetWorldState().objects.at(broken).name;
@@ -217,12 +241,14 @@ class Player {
   base::Rng control_rng_;
   RobotSimulator simulator_;
   FloorObjects floor_;
+  const std::vector<geometry::Pose3> X_BOstart_;
   const bool drives_;
   const std::shared_ptr<const skills::DrivingContext> driving_;
   ProgressWatch progress_;
   double start_{0.0}, next_cycle_{0.0};  // [s]
   long samples_{0};
-  bool is_void_{false};  // physics broke before anything fell
+  bool is_broken_{false}, is_void_{false};  // physics broke; before anything fell
+  std::vector<std::string> down_before_;    // what was knocked over before, and no load had fallen
   RolloutResult result_;
 };
 

@@ -99,7 +99,20 @@ class Recorder {
     has_begun_ = true;
     is_late_ = touches_ = false;
     last_look_ = last_late_cycle_ = -1.0;
+    NoteFallsWhileSettling(simulator);
     if (watcher_ != nullptr) watcher_->OnBegin();
+  }
+
+  void NoteFallsWhileSettling(const simulation::RobotSimulator& simulator) {
+    const geometry::Pose3 X_BM = geometry::Lift(setup_.robot_state.X_MB).Inverse();
+    for (std::size_t i = 0; i < recording_.objects.size(); ++i) {
+      const world::ObjectState* start = setup_.world_state.Find(recording_.objects[i]);
+      if (start == nullptr ||
+          !FellWhileSettling(simulator, static_cast<int>(i), X_BM * start->X_MO, setup_.standing)) {
+        continue;
+      }
+      Say(Kind::kFalls, 0.0, recording_.objects[i] + " falls: off the robot while it settled");
+    }
   }
 
   void NoteBase(const simulation::RobotSimulator& simulator) {
