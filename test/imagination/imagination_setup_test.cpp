@@ -514,6 +514,25 @@ TEST(StartStateTest, NoRobotStartsOnAnotherStorey) {
   EXPECT_THAT(ConfigErrorOf([&] { MakeStartState(setup, {{"RobotAt", {"Door"}}}, {}); }), is_told);
 }
 
+TEST(StartStateTest, RefusesALoadWhosePlaceIsBesideTheTray) {
+  YAML::Node robot = YAML::LoadFile(Root() + "/config/robots/cart.yaml");
+  robot["urdf"] = Root() + "/urdf/cart.urdf";
+  robot["object_on_tray"]["xyz"][1] = 0.9;
+  SceneFile file;
+  file.root["robot"] = file.folder.Write("robot.yaml", YAML::Dump(robot));
+  const ImaginationSetup setup = file.Load();
+  const base::Atom here{"RobotAt", {"door"}}, load{"On", {"Mill1", "TrayArea1"}};
+  EXPECT_NO_THROW(MakeStartState(setup, "door", {}));
+  EXPECT_NO_THROW(MakeStartState(setup, {here, {"On", {"mill1", "tabletop"}}}));
+  for (const std::string& why :
+       {ConfigErrorOf([&] { MakeStartState(setup, "door", {"mill1"}); }), ConfigErrorOf([&] {
+          MakeStartState(setup, {here, load});
+        })}) {
+    EXPECT_THAT(why, AllOf(HasSubstr("'mill1' would begin"), HasSubstr("m beside the tray's plate"),
+                           HasSubstr("object_on_tray")));
+  }
+}
+
 TEST(StartStateTest, ReadsAtoms) {
   const StartState start = MakeStartState(Hall(), {{"HasArmPosture", {"leftArm1", "tucked"}},
                                                    {"On", {"mill1", "trayArea1"}},
