@@ -150,7 +150,7 @@ TEST(ByHeightTest, WhatIsOverTheBaseAndBesideTheMastIsFree) {
               : 0;
     }
   }
-  EXPECT_GT(under, Rounds(300));
+  EXPECT_GT(2 * under, Rounds(300)) << "or it shows little";
 }
 
 /// @param whole  covers all of `part`, with cells in the same places.
