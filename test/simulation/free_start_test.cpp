@@ -139,7 +139,9 @@ TEST(RefuseOffTrayTest, ATiltedPlateIsNamed) {
         upright.rotation * Eigen::Vector3d(0.0, 0.0, 0.125 * std::sin(std::abs(tilt)));
     const std::string why = WhyOff(*WithTray(at_rest, tilt), "mill");
     const std::string tilted = fmt::format("is tilted by {:.2f} rad", std::abs(tilt));
-    if (std::abs(tilt) < 0.02) EXPECT_EQ(why, "") << tilt;
+    if (std::abs(tilt) < 0.02) {
+      EXPECT_EQ(why, "") << tilt;
+    }
     if (std::abs(tilt) < 0.09) continue;  // it may begin at rest
     for (const geometry::Pose3& place : {at_rest, upright}) {
       EXPECT_THAT(WhyOff(*WithTray(place, tilt), "mill"),
