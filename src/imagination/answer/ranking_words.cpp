@@ -244,13 +244,13 @@ std::string WhatSpeaksAgainst(const std::vector<Evidence>& alternatives, const E
       names[rival - alternatives.data()], best.duration.mean - rival->duration.mean);
 }
 
-/// The cheapest that would cost less but is not known to succeed often enough.
+/// The cheapest that would cost less and may succeed often enough, but is not known to.
 std::string WhoIsNotGoodEnough(const std::vector<Evidence>& alternatives, const Evidence& best,
                                const Criteria& criteria, const std::vector<std::string>& names) {
   if (criteria.rule != RankingRule::kCost || !best.cost) return "";
   const Evidence* cheapest = nullptr;
   for (const Evidence& evidence : alternatives) {
-    if (Judge(evidence.success, criteria.min_success) == Suitability::kReached) continue;
+    if (Judge(evidence.success, criteria.min_success) != Suitability::kOpen) continue;
     if (!evidence.cost || evidence.cost->mean >= (cheapest ? *cheapest : best).cost->mean) continue;
     cheapest = &evidence;
   }
