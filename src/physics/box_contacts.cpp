@@ -11,12 +11,6 @@ namespace {
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
-/// A face of A takes the place of B's only if its way out is shorter by this much [m]: rounding
-/// does not choose.
-constexpr double kSameFace = 1e-6;
-/// Edges whose directions differ by a sine below this are parallel: between such, faces decide.
-constexpr double kParallel = 1e-5;
-
 /// The face of least overlap of one of both boxes.
 struct FaceChoice {
   double overlap{std::numeric_limits<double>::infinity()};  ///< [m], negative: apart
@@ -121,31 +115,22 @@ void AddFaceContacts(const PlacedBox& reference, int axis, double sign, const Pl
   }
 }
 
-/// The middle of the edge along `axis` that lies farthest in the direction.
-Vector3d FarthestEdge(const PlacedBox& box, int axis, const Vector3d& direction_W) {
+/// The edge along `axis` that lies farthest in the direction.
+PlacedEdge FarthestEdge(const PlacedBox& box, int axis, const Vector3d& direction_W) {
   Vector3d middle = box.centre;
   for (int i = 0; i < 3; ++i) {
     if (i == axis) continue;
     middle += std::copysign(box.half_size[i], box.R_WB.col(i).dot(direction_W)) * box.R_WB.col(i);
   }
-  return middle;
+  return {middle, box.R_WB.col(axis), box.half_size[axis]};
 }
 
 void AddEdgeContact(const PlacedBox& a, const PlacedBox& b, const EdgeChoice& edges,
                     ContactList* contacts) {
   const Vector3d normal = b.R_WB * edges.normal_B;
-  const Vector3d along_a = a.R_WB.col(edges.axis_a), along_b = b.R_WB.col(edges.axis_b);
-  const Vector3d from_a = FarthestEdge(a, edges.axis_a, -normal);
-  const Vector3d from_b = FarthestEdge(b, edges.axis_b, normal);
-  // Where two lines are nearest to each other; they are not parallel (kParallel).
-  const double cosine = along_a.dot(along_b), square = 1.0 - cosine * cosine;
-  const Vector3d between = from_b - from_a;
-  const double s = (between.dot(along_a) - cosine * between.dot(along_b)) / square;
-  const double t = (cosine * between.dot(along_a) - between.dot(along_b)) / square;
-  const double limit_a = a.half_size[edges.axis_a], limit_b = b.half_size[edges.axis_b];
-  const Vector3d on_a = from_a + std::clamp(s, -limit_a, limit_a) * along_a;
-  const Vector3d on_b = from_b + std::clamp(t, -limit_b, limit_b) * along_b;
-  contacts->Add(0.5 * (on_a + on_b), normal, edges.overlap);
+  contacts->Add(
+      BetweenEdges(FarthestEdge(a, edges.axis_a, -normal), FarthestEdge(b, edges.axis_b, normal)),
+      normal, edges.overlap);
 }
 
 }  // namespace

@@ -349,6 +349,16 @@ double ReachAlong(double axis_component, const PlacedCylinder& cylinder) {
   return std::abs(axis_component) * cylinder.half_length + cylinder.radius * std::sqrt(sine2);
 }
 
+Vector3d BetweenEdges(const PlacedEdge& a, const PlacedEdge& b) {
+  const double cosine = a.along.dot(b.along), square = 1.0 - cosine * cosine;
+  const Vector3d between = b.middle - a.middle;
+  const double s = (between.dot(a.along) - cosine * between.dot(b.along)) / square;
+  const double t = (cosine * between.dot(a.along) - between.dot(b.along)) / square;
+  const Vector3d on_a = a.middle + std::clamp(s, -a.half_length, a.half_length) * a.along;
+  const Vector3d on_b = b.middle + std::clamp(t, -b.half_length, b.half_length) * b.along;
+  return 0.5 * (on_a + on_b);
+}
+
 FlatFace FloorFace() {
   return {Vector3d::Zero(),  Vector3d::UnitX(), Vector3d::UnitY(),
           Vector3d::UnitZ(), kInfinity,         kInfinity};

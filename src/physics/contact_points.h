@@ -82,6 +82,22 @@ void AddCylinderOnFace(const PlacedCylinder& cylinder, const FlatFace& face,
 /// plate stands on the plate.
 inline constexpr double kFacePreference = 1e-3;
 
+/// A face of A takes the place of B's only if its way out is shorter by this much [m]: rounding
+/// does not choose.
+inline constexpr double kSameFace = 1e-6;
+/// Edges whose directions differ by a sine below this are parallel: between such, faces decide.
+inline constexpr double kParallel = 1e-5;
+
+/// An edge somewhere in the world, or in a frame that both edges share.
+struct PlacedEdge {
+  Eigen::Vector3d middle;  ///< [m]
+  Eigen::Vector3d along;   ///< unit
+  double half_length;      ///< [m]
+};
+
+/// Halfway between the points at which two edges are nearest to each other. @pre not parallel
+Eigen::Vector3d BetweenEdges(const PlacedEdge& a, const PlacedEdge& b);
+
 /// What the quick look at two shapes says.
 enum class QuickLook {
   kApart,      ///< they do not touch

@@ -133,8 +133,7 @@ void AskOde(PlacedShape& a, PlacedShape& b, ContactList* contacts) {
 }
 
 /// True if nothing is left to ask.
-bool TryOwn(const PlacedShape& a, const PlacedShape& b, const Vector3d& lean,
-            ContactList* contacts) {
+bool TryOwn(PlacedShape& a, PlacedShape& b, const Vector3d& lean, ContactList* contacts) {
   using Kind = PlacedShape::Kind;
   if (a.kind() == Kind::kBox && b.kind() == Kind::kBox) {
     AddBoxOnBox(a.box(), b.box(), contacts);
@@ -199,7 +198,6 @@ void PlacedShape::MakeBox(const geometry::Box& box) {
   size_ = box.size / 2;
   reach_ = size_.norm();
   inside_ = size_.minCoeff();
-  polytope_ = std::make_unique<const Polytope>(PolytopeOf(box));
   geom_.reset(dCreateBox(nullptr, box.size.x(), box.size.y(), box.size.z()));
 }
 
@@ -248,7 +246,12 @@ PlacedCylinder PlacedShape::cylinder() const { return {p_WS_, R_WS_.col(2), size
 
 PlacedBox PlacedShape::box() const { return {p_WS_, R_WS_, size_}; }
 
-PlacedPolytope PlacedShape::polytope() const { return {polytope_.get(), p_WS_, R_WS_}; }
+PlacedPolytope PlacedShape::polytope() {
+  if (!polytope_) {
+    polytope_ = std::make_unique<const Polytope>(PolytopeOf(geometry::Box{2.0 * size_}));
+  }
+  return {polytope_.get(), p_WS_, R_WS_};
+}
 
 dxGeom* PlacedShape::geom() {
   if (kind_ != Kind::kFloor && !is_geom_in_place_) SetGeomPose(geom_.get(), p_WS_, R_WS_);

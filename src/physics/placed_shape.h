@@ -34,8 +34,8 @@ class PlacedShape {
   PlacedCylinder cylinder() const;  ///< @pre kind() is kCylinder
   PlacedBox box() const;            ///< @pre kind() is kBox
   /// Boxes and those meshes that are convex solids of few faces.
-  bool is_polytope() const { return polytope_ != nullptr; }
-  PlacedPolytope polytope() const;  ///< @pre is_polytope()
+  bool is_polytope() const { return kind_ == Kind::kBox || polytope_ != nullptr; }
+  PlacedPolytope polytope();  ///< @pre is_polytope()
 
   /// ODE's own shape, moved to where this one is.
   dxGeom* geom();
@@ -61,7 +61,7 @@ class PlacedShape {
   Eigen::Vector3d p_WS_{Eigen::Vector3d::Zero()};
   Eigen::Matrix3d R_WS_{Eigen::Matrix3d::Identity()};
   bool is_geom_in_place_{false};
-  std::unique_ptr<const Polytope> polytope_;
+  std::unique_ptr<const Polytope> polytope_;           // of a box once it is asked for
   std::unique_ptr<dxTriMeshData, Release> mesh_data_;  // outlives the geom
   std::vector<double> vertices_;                       // ODE reads both while the geom lives
   std::vector<unsigned> indices_;

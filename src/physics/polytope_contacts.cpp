@@ -11,12 +11,6 @@ namespace {
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
-/// A face of A takes the place of B's only if its way out is shorter by this much [m]: rounding
-/// does not choose.
-constexpr double kSameFace = 1e-6;
-/// Edges whose directions differ by a sine below this are parallel: between such, faces decide.
-constexpr double kParallel = 1e-5;
-
 /// A polytope's vertices and normals in the frame of another one.
 struct Seen {
   std::vector<Vector3d> vertices, normals;
@@ -132,21 +126,17 @@ void AddFaceContacts(const PlacedPolytope& reference, int face_index, const Poly
   }
 }
 
+PlacedEdge EdgeBetween(const std::vector<Vector3d>& vertices, const Polytope::Edge& edge) {
+  const Vector3d& from = vertices[edge.from];
+  const Vector3d way = vertices[edge.to] - from;
+  return {from + 0.5 * way, way.normalized(), 0.5 * way.norm()};
+}
+
 void AddEdgeContact(const EdgeChoice& edges, const Seen& a_in_b, const PlacedPolytope& b,
                     ContactList* contacts) {
-  const Vector3d& from_a = a_in_b.vertices[edges.edge_a->from];
-  const Vector3d& from_b = b.solid->vertices[edges.edge_b->from];
-  const Vector3d way_a = a_in_b.vertices[edges.edge_a->to] - from_a;
-  const Vector3d way_b = b.solid->vertices[edges.edge_b->to] - from_b;
-  const Vector3d along_a = way_a.normalized(), along_b = way_b.normalized();
-  // Where two lines are nearest to each other; they are not parallel (kParallel).
-  const double cosine = along_a.dot(along_b), square = 1.0 - cosine * cosine;
-  const Vector3d between = from_b - from_a;
-  const double s = (between.dot(along_a) - cosine * between.dot(along_b)) / square;
-  const double t = (cosine * between.dot(along_a) - between.dot(along_b)) / square;
-  const Vector3d on_a = from_a + std::clamp(s, 0.0, way_a.norm()) * along_a;
-  const Vector3d on_b = from_b + std::clamp(t, 0.0, way_b.norm()) * along_b;
-  contacts->Add(b.centre + b.R_WB * (0.5 * (on_a + on_b)), b.R_WB * edges.normal, edges.overlap);
+  const Vector3d at = BetweenEdges(EdgeBetween(a_in_b.vertices, *edges.edge_a),
+                                   EdgeBetween(b.solid->vertices, *edges.edge_b));
+  contacts->Add(b.centre + b.R_WB * at, b.R_WB * edges.normal, edges.overlap);
 }
 
 /// Overlap of a cylinder and a polytope, seen in the polytope's frame, along a unit direction.
