@@ -260,8 +260,7 @@ std::string WhoIsNotGoodEnough(const std::vector<Evidence>& alternatives, const 
       "wanted are {}",
       names[cheapest - alternatives.data()],
       Against(cheapest->cost->mean, best.cost->mean, " s", 1),
-      std::floor(100.0 * cheapest->success.lower),
-      fmt::format("{:g} %", 100.0 * criteria.min_success));
+      std::floor(100.0 * cheapest->success.lower), Percent(criteria.min_success));
 }
 
 /// What the failures that were weighed cost, and where the answer would turn.

@@ -114,12 +114,12 @@ void JoinTwo(std::vector<NarrowHeights>* narrow) {
   narrow->erase(narrow->begin() + static_cast<std::ptrdiff_t>(second));
 }
 
+}  // namespace
+
 void Occupy(const world::OccupancyGrid& more, world::OccupancyGrid* grid) {
   for (std::size_t i = 0; i < grid->cells.size(); ++i)
     if (more.cells[i] == world::Cell::kOccupied) grid->cells[i] = world::Cell::kOccupied;
 }
-
-}  // namespace
 
 std::optional<geometry::Polygon> ShapesWithin(const robot::Robot& robot, const Band& band) {
   return OutlineWithin(ShapesOf(robot), band);

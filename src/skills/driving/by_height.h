@@ -55,6 +55,9 @@ struct SlicedByHeight {
 SlicedByHeight SliceByHeight(const world::World& world, const robot::Robot& robot, const Band& band,
                              double resolution, double margin);
 
+/// What is occupied in one map is in the other one, too. @pre both have the same cells
+void Occupy(const world::OccupancyGrid& more, world::OccupancyGrid* grid);
+
 /// A costmap with the layers' obstacles. A centre keeps so far from these that nothing touches them
 /// whichever way it heads, but no farther than the whole base has to.
 /// @param whole  of what is in the way of the whole base, with its inscribed radius.

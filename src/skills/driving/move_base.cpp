@@ -141,12 +141,6 @@ double LaserPlane(const robot::Robot& robot) {
       "`obstacle_layer: none` in the scene");
 }
 
-/// What no floor bears is in the way of the whole base.
-void CloseHoles(const world::OccupancyGrid& holes, world::OccupancyGrid* map) {
-  for (std::size_t i = 0; i < holes.cells.size(); ++i)
-    if (holes.cells[i] == world::Cell::kOccupied) map->cells[i] = world::Cell::kOccupied;
-}
-
 /// @param seen  has what is in the laser's plane, `world` everything, in the same cells.
 MapByPlane ByPlane(const world::OccupancyGrid& seen, const SlicedByHeight& world,
                    const DrivingContext& context) {
@@ -159,7 +153,7 @@ MapByPlane ByPlane(const world::OccupancyGrid& seen, const SlicedByHeight& world
       beyond.cells[static_cast<std::size_t>(row) * beyond.width + column] = world::Cell::kFree;
     }
   }
-  if (context.holes) CloseHoles(*context.holes, &beyond);
+  if (context.holes) Occupy(*context.holes, &beyond);
   const double radius = geometry::InscribedRadius(context.footprint);
   by_plane.beyond = std::make_shared<const navigation::Costmap>(
       Layered({beyond, radius, context.params.costmap}, world.layers, *context.robot));
@@ -183,7 +177,7 @@ DrivingContext MakeDrivingContext(const world::World& world, const robot::Robot&
   SlicedByHeight map = SliceByHeight(world, robot, heights, params.map_resolution, margin);
   const double step = params.min_obstacle_height;  // what is no deeper is driven over as well
   const auto holes = world::FloorHoles(world, step, params.map_resolution, margin);
-  if (holes) CloseHoles(*holes, &map.whole);
+  if (holes) Occupy(*holes, &map.whole);  // in the way of the whole base
   DrivingContext context = ContextOf(map, robot, params);
   if (holes) {
     context.holes = std::make_shared<const world::OccupancyGrid>(*holes);
