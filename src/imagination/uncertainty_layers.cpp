@@ -60,6 +60,9 @@ std::string CertainText(const Uncertainty& uncertainty) {
   const bool is_anything_spread =
       std::any_of(uncertainty.quantities.begin(), uncertainty.quantities.end(),
                   [](const auto& entry) { return IsSpread(entry.second); });
+  if (!is_anything_spread && num_named > 0)
+    return "nothing is uncertain: each quantity has one value, so that rollouts differ by noise at "
+           "most, and spreads and shares say little of a real robot";
   if (!is_anything_spread)
     return "nothing is uncertain: all rollouts are of one and the same truth, so that spreads and "
            "shares say little of a real robot";
