@@ -158,6 +158,8 @@ void RobotStateEstimator::Restart() {
   base_in_odometry_.Clear();
   corrections_.Clear();
   joints_.Clear();
+  early_joints_.reset();
+  early_transforms_.reset();
   tree_->ForgetMoving();
   ++num_restarts_;
 }
@@ -179,7 +181,21 @@ void RobotStateEstimator::ForgetAhead() {
       {frames_.odometry, frames_.base}};
   for (const auto& [parent, child] : links) {
     const auto newest = tree_->NewestOf(parent, child);
-    if (newest && std::isfinite(*newest) && IsAhead(*newest)) return tree_->ForgetMoving();
+    if (!newest || !std::isfinite(*newest) || !IsAhead(*newest)) continue;
+    early_transforms_.reset();
+    return tree_->ForgetMoving();
+  }
+}
+
+/// The odometry may come last: what was told once for a time that it has reached now is not told
+/// again where the robot stands still.
+void RobotStateEstimator::TakeEarly() {
+  if (early_joints_ && !IsAhead(early_joints_->first)) {
+    const auto [stamp, reading] = *std::exchange(early_joints_, std::nullopt);
+    OnJoints(stamp, reading);
+  }
+  if (early_transforms_ && !IsAhead(*early_transforms_)) {
+    OnTransforms(*std::exchange(early_transforms_, std::nullopt));
   }
 }
 
@@ -205,6 +221,7 @@ Receipt RobotStateEstimator::OnOdometry(double stamp, const std::string& frame,
       is_base ? reading : robot::OdometryReading{reading.X_OB * X_CB, MovedTo(X_CB, reading.V_B)});
   ForgetOld();
   ForgetAhead();
+  TakeEarly();
   return is_new ? CheckFrame(frame) : Receipt{Reception::kRepeated, {}};
 }
 
@@ -235,7 +252,11 @@ Receipt RobotStateEstimator::OnJoints(double stamp, const robot::JointReading& r
     }
   }
   if (IsLate(stamp)) return Late();
-  if (IsAhead(stamp)) return Ahead("header.stamp");
+  if (IsAhead(stamp)) {
+    early_joints_.emplace(stamp, reading);
+    return Ahead("header.stamp");
+  }
+  early_joints_.reset();
   const bool is_new = joints_.Insert(stamp, reading);
   if (!now()) joints_.KeepBetween(stamp - params_.history, kForever);
   return {is_new ? Reception::kTaken : Reception::kRepeated, {}};
@@ -275,7 +296,10 @@ Receipt RobotStateEstimator::TakeCorrection(const std::string& frame, double new
     return {};
   }
   if (IsLate(time)) return Late();
-  if (IsAhead(time)) return Ahead(frames_.map + " -> " + frame);
+  if (IsAhead(time)) {
+    early_transforms_ = time;
+    return Ahead(frames_.map + " -> " + frame);
+  }
   const double lead = std::max(time - now().value_or(time), 0.0);
   const bool is_new = corrections_.Insert(time, {X_MF, time - std::min(lead, LeastLead()), lead});
   if (!now()) corrections_.KeepBetween(time - params_.history, kForever);

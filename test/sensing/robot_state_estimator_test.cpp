@@ -362,9 +362,30 @@ TEST_F(EstimatorTest, AClockThatJumpsAheadIsFollowed) {
   All(10.0);
   Joints(900.0);  // comes before the odometry of that time
   Odometry(900.0, {2.0, 0.0, 0.0});
-  EXPECT_EQ(state_.MissingNow(), Missing::kJointStates) << "those of 900 s came too early";
   All(900.05, {2.0, 0.0, 0.0});
   EXPECT_EQ(state_.CompleteUntil(), 900.05);
+}
+
+/// As where a robot that stands still tells its place once, and its odometry is heard last.
+TEST_F(EstimatorTest, WhatIsToldOnceWaitsForTheOdometryOfItsTime) {
+  All(10.0);
+  Joints(900.0, 7.0);
+  Localise(900.0, {0.5, 0.0, 0.0});
+  Odometry(900.0, {2.0, 0.0, 0.0});
+  ASSERT_EQ(state_.CompleteUntil(), 900.0);
+  EXPECT_EQ(state_.At(900.0)->X_MB.x, 2.5);
+  EXPECT_EQ(state_.At(900.0)->joints.at("a"), 7.0);
+}
+
+TEST_F(EstimatorTest, WhatCameAfterAStrayMessageCountsAndNotTheStrayOne) {
+  All(10.0);
+  Joints(900.0, 7.0);
+  Localise(900.0, {0.5, 0.0, 0.0});
+  All(10.05);
+  Odometry(900.0);
+  EXPECT_EQ(state_.MissingNow(), Missing::kJointStates);
+  Joints(900.0);
+  EXPECT_EQ(state_.MissingNow(), Missing::kLocalisation);
 }
 
 TEST_F(EstimatorTest, AGapInTheOdometryIsNotBridged) {

@@ -4,6 +4,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 
 #include "hires/geometry/map_to_world.h"
 #include "hires/sensing/body_reading.h"
@@ -79,7 +80,8 @@ struct RobotEstimate {
 /// The one estimate of where the robot is and how it stands, for all who ask. Puts together what
 /// sensors say, each at its own time: between two readings it is interpolated. Knows no clock but
 /// the messages' stamps [s]; the odometry's newest is "now". The same messages give the same state
-/// however they interleave.
+/// however they interleave; of what is too far ahead of the odometry the newest of each kind waits
+/// for it.
 ///
 /// Localisation is what the tree says of map -> odometry: the correction of that time where there
 /// are corrections around it, else the newest one. One that is dated ahead, as amcl does, is no
@@ -151,6 +153,7 @@ class RobotStateEstimator {
   void Restart();
   void ForgetOld();
   void ForgetAhead();
+  void TakeEarly();
   bool IsLate(double stamp) const;
   Receipt Late() const;
   FramePose ChildToBase(const std::string& child, double stamp) const;
@@ -176,6 +179,9 @@ class RobotStateEstimator {
   bool is_base_corrected_{false};             // corrections are of the base, not of the odometry
   std::optional<geometry::Pose2> X_MOfixed_;  // where map and odometry never move
   JointHistory joints_;
+  // The newest that was too far ahead of the odometry.
+  std::optional<std::pair<double, robot::JointReading>> early_joints_;
+  std::optional<double> early_transforms_;  // [s]
   int num_behind_{0};  // readings of the odometry in a row that seem to come from another clock
   int num_restarts_{0};
 };
