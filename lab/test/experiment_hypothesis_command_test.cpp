@@ -142,6 +142,8 @@ TEST_F(HypothesisCommandTest, RefusesBadArgumentsBeforeAnythingIsPlayed) {
 std::string QuickPackage(const TemporaryFolder& folder) {
   namespace fs = std::filesystem;
   fs::copy(kRoot + "/config", folder.path() / "config", fs::copy_options::recursive);
+  fs::create_directory(folder.path() / "lab");
+  fs::create_directory_symlink(fs::path(kRoot) / "lab" / "config", folder.path() / "lab" / "config");
   for (const char* name : {"worlds", "urdf"}) {
     fs::create_directory_symlink(fs::path(kRoot) / name, folder.path() / name);
   }

@@ -166,7 +166,7 @@ TEST(LoadMonitorTest, WhatFellOffTheRobotWhileItSettledHasFallenUprightOrNot) {
   int stayed = 0, stands_elsewhere = 0;
   for (int round = 0; round < hires::test_support::Rounds(120); ++round) {
     Thrown thrown(base::Rng(3).Fork(round));
-    if (thrown.tilt > 0.1 && thrown.tilt < 0.6) continue;  // it leans against something
+    if (thrown.tilt > 0.01 && thrown.tilt < 0.6) continue;  // it leans against something
     const bool is_well = thrown.tilt <= 0.1 && thrown.is_on_robot;
     LoadMonitor& monitor = *thrown.monitor;
     for (int look = 0; look < 3; ++look) {

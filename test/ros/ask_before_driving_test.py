@@ -53,7 +53,7 @@ class AskBeforeDrivingTest(unittest.TestCase):
             wanted, self.navigation.values(), output))
 
     def test_the_example_drives_as_imagination_recommends(self):
-        code, output = self.run_example('--object', 'peppermill1')
+        code, output = self.run_example('--object', 'race_flowers1')
         self.assertEqual(code, 0, output)
         self.assertIn('slow): 9', output)
         self.await_max_vel_x(SLOW, output)
@@ -62,7 +62,7 @@ class AskBeforeDrivingTest(unittest.TestCase):
         self.await_max_vel_x(FAST, output)
 
     def test_the_example_in_cpp_does_the_same(self):
-        code, output = self.run_cpp_example('peppermill1')
+        code, output = self.run_cpp_example('race_flowers1')
         self.assertEqual(code, 0, output)
         self.assertIn('slow): 6', output)
         self.await_max_vel_x(SLOW, output)
