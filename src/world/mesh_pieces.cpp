@@ -76,24 +76,77 @@ void AppendOutline(const geometry::Shape& shape, const geometry::Pose3& X_WS, do
   if (outline) outlines->push_back(std::move(*outline));
 }
 
-}  // namespace
-
-std::vector<geometry::TriangleMesh> ConnectedParts(const geometry::TriangleMesh& mesh) {
-  Groups groups(mesh.vertices.size());
-  for (const auto& triangle : mesh.triangles) {
-    groups.Join(triangle[0], triangle[1]);
-    groups.Join(triangle[1], triangle[2]);
-  }
+/// The parts that share corners, in the order of their first triangle.
+std::vector<geometry::TriangleMesh> PartsOf(const geometry::TriangleMesh& mesh, Groups* groups) {
   std::map<int, std::size_t> index_of_group;
   std::vector<PartBuilder> builders;
   for (const auto& triangle : mesh.triangles) {
-    const auto [entry, is_new] = index_of_group.emplace(groups.Find(triangle[0]), builders.size());
+    const auto [entry, is_new] = index_of_group.emplace(groups->Find(triangle[0]), builders.size());
     if (is_new) builders.emplace_back();
     builders[entry->second].Add(mesh, triangle);
   }
   std::vector<geometry::TriangleMesh> parts;
   for (PartBuilder& builder : builders) parts.push_back(builder.Take());
   return parts;
+}
+
+/// Six times the signed volume [m^3], of a closed part: negative where its triangles face inwards.
+double SixfoldVolume(const geometry::TriangleMesh& part) {
+  const Eigen::Vector3d& origin = part.vertices.front();
+  double sum = 0.0;
+  for (const auto& t : part.triangles) {
+    sum += (part.vertices[t[0]] - origin)
+               .dot((part.vertices[t[1]] - origin).cross(part.vertices[t[2]] - origin));
+  }
+  return sum;
+}
+
+bool IsClosed(const geometry::TriangleMesh& mesh) {
+  std::set<std::pair<int, int>> edges;
+  for (const auto& t : mesh.triangles) {
+    for (int k = 0; k < 3; ++k) edges.insert({t[k], t[(k + 1) % 3]});
+  }
+  return std::all_of(edges.begin(), edges.end(), [&](const auto& edge) {
+    return edges.count({edge.second, edge.first}) > 0;
+  });
+}
+
+/// @pre `around` is solid.
+bool IsWithin(const geometry::TriangleMesh& part, const geometry::TriangleMesh& around) {
+  return std::all_of(
+      around.triangles.begin(), around.triangles.end(), [&](const std::array<int, 3>& triangle) {
+        const Eigen::Vector3d normal = NormalOf(around, triangle);
+        const double height = normal.dot(around.vertices[triangle[0]]);
+        return std::all_of(
+            part.vertices.begin(), part.vertices.end(),
+            [&](const Eigen::Vector3d& corner) { return normal.dot(corner) <= height; });
+      });
+}
+
+}  // namespace
+
+std::vector<geometry::TriangleMesh> ConnectedParts(const geometry::TriangleMesh& mesh) {
+  Groups groups(mesh.vertices.size());
+  std::vector<int> corner_of;  // of the part with that index, one in the mesh
+  for (const auto& triangle : mesh.triangles) {
+    groups.Join(triangle[0], triangle[1]);
+    groups.Join(triangle[1], triangle[2]);
+  }
+  std::set<int> seen;
+  for (const auto& triangle : mesh.triangles) {
+    if (seen.insert(groups.Find(triangle[0])).second) corner_of.push_back(triangle[0]);
+  }
+  std::vector<geometry::TriangleMesh> parts = PartsOf(mesh, &groups);
+  bool is_any_hollow = false;
+  for (std::size_t i = 0; i < parts.size(); ++i) {
+    if (SixfoldVolume(parts[i]) >= 0.0 || !IsClosed(parts[i])) continue;
+    for (std::size_t k = 0; k < parts.size(); ++k) {
+      if (k == i || !IsSolid(parts[k]) || !IsWithin(parts[i], parts[k])) continue;
+      groups.Join(corner_of[i], corner_of[k]);
+      is_any_hollow = true;
+    }
+  }
+  return is_any_hollow ? PartsOf(mesh, &groups) : parts;
 }
 
 bool IsConvex(const geometry::TriangleMesh& mesh, double slack) {
@@ -108,16 +161,7 @@ bool IsConvex(const geometry::TriangleMesh& mesh, double slack) {
   return true;
 }
 
-bool IsSolid(const geometry::TriangleMesh& mesh) {
-  std::set<std::pair<int, int>> edges;
-  for (const auto& t : mesh.triangles) {
-    for (int k = 0; k < 3; ++k) edges.insert({t[k], t[(k + 1) % 3]});
-  }
-  const bool is_closed = std::all_of(edges.begin(), edges.end(), [&](const auto& edge) {
-    return edges.count({edge.second, edge.first}) > 0;
-  });
-  return is_closed && IsConvex(mesh);
-}
+bool IsSolid(const geometry::TriangleMesh& mesh) { return IsClosed(mesh) && IsConvex(mesh); }
 
 std::vector<geometry::Polygon> MeshOutlinesInBand(const geometry::TriangleMesh& mesh,
                                                   const geometry::Pose3& X_WS, double z_min,

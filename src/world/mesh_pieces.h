@@ -7,7 +7,8 @@
 namespace hires::world {
 
 /// The parts of a mesh that hang together (share corners), each a mesh of its own, in the order of
-/// their first triangle.
+/// their first triangle. A closed surface that faces inwards, within a solid part, is that part's
+/// cavity (a room in a building that has no door, say): both are one part, which is not solid.
 std::vector<geometry::TriangleMesh> ConnectedParts(const geometry::TriangleMesh& mesh);
 
 /// Does every corner lie on or behind the plane of every triangle? Corners may stand out by `slack`

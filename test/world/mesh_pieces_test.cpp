@@ -75,6 +75,30 @@ TEST(MeshPiecesTest, RoomBetweenTheWallsOfOneMeshStaysOpen) {
   EXPECT_FALSE(AnyContains(outlines, 5, 2.5));
 }
 
+/// Rooms without a door: what is between the walls is free, however many there are.
+TEST(MeshPiecesTest, ACavityInAClosedBoxStaysOpen) {
+  TriangleMesh mesh;
+  AddBox({0, 0, 0}, {10, 5, 3}, &mesh);
+  AddBox({20, 0, 0}, {21, 1, 1}, &mesh);
+  TriangleMesh rooms;
+  AddBox({0.2, 0.2, 0.2}, {4, 4.8, 2.8}, &rooms);
+  AddBox({4.2, 0.2, 0.2}, {9.8, 4.8, 2.8}, &rooms);
+  const int first = static_cast<int>(mesh.vertices.size());
+  mesh.vertices.insert(mesh.vertices.end(), rooms.vertices.begin(), rooms.vertices.end());
+  for (const auto& t : rooms.triangles) {
+    mesh.triangles.push_back({t[0] + first, t[2] + first, t[1] + first});
+  }
+  const auto parts = ConnectedParts(mesh);
+  ASSERT_EQ(parts.size(), 2u);
+  EXPECT_FALSE(IsSolid(parts[0]));
+  EXPECT_TRUE(IsSolid(parts[1]));
+  const auto outlines = MeshOutlinesInBand(mesh, {}, 1.0, 1.5);
+  EXPECT_FALSE(AnyContains(outlines, 2, 2));
+  EXPECT_FALSE(AnyContains(outlines, 7, 2));
+  for (const double wall : {0.0, 4.0, 4.2, 10.0}) EXPECT_TRUE(AnyContains(outlines, wall, 2));
+  EXPECT_TRUE(AnyContains(outlines, 20.5, 0.5));
+}
+
 TEST(MeshPiecesTest, HollowCornerOfAnLStaysOpenAndItsSidesClosed) {
   const TriangleMesh mesh = LShape();
   EXPECT_EQ(ConnectedParts(mesh).size(), 1u);
