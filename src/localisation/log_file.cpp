@@ -17,6 +17,7 @@
 #include "hires/base/short_text.h"
 #include "hires/base/text.h"
 #include "hires/geometry/angles.h"
+#include "localisation/log_repair.h"
 
 namespace hires::localisation {
 namespace {
@@ -32,6 +33,7 @@ constexpr double kLatest = 1.0;            // [s] by which a line may come too l
 constexpr double kCarmenMaxRange = 80.0;   // [m] what CARMEN assumes of FLASER
 constexpr double kCarmenMinRange = 0.01;   // [m] its accuracy there; 0 is no measurement
 constexpr double kSameMounting = 0.05;     // [m], [rad] between two lines
+constexpr double kSamePose = 1e-3;         // [m], [rad] up to the digits that are written
 constexpr double kFarthestMounting = 3.0;  // [m] from the base
 constexpr int kWordsOfTime = 3;            // ipc_timestamp hostname logger_timestamp
 constexpr double kMostOddShare = 0.01;     // of the lines that can be read
@@ -68,6 +70,7 @@ class CarmenReader {
   void TakeOdometry();
   void TakeFrontLaser();
   void TakeRobotLaser();
+  bool RepeatsLastScan(const Pose2& pose, double time) const;
   bool IsOfTheFirstKind();
   void TakePoses(std::size_t first, RobotLog::Scan* scan);
   void AddScan(RobotLog::Scan scan);
@@ -94,11 +97,13 @@ class CarmenReader {
   std::vector<std::string_view> words_;  // of the line that is read
   int line_{0};
   RobotLog log_;
+  LogLines lines_;
   std::string laser_kind_;             // FLASER or ROBOTLASER1, whichever came first
   std::set<std::string> passed_over_;  // kinds of lines nobody here knows
   double range_max_{kCarmenMaxRange};  // of FLASER
   double laser_offset_{0.0};           // PARAM robot_frontlaser_offset
   bool is_corrected_{false};           // the laser's place on the robot changes
+  int num_repeated_{0};                // lines ODOM with which a mapper repeats a scan's pose
   double last_odometry_{-kMostTime}, last_scan_{-kMostTime};  // latest times so far
   int late_lines_{0};
   double latest_{0.0};           // [s] the worst of them
@@ -202,8 +207,25 @@ void CarmenReader::TakeOdometry() {
   odometry.reading.X_OB = Pose(1, "odometry");
   odometry.reading.V_B.vx = Number(4, "tv", -kMostCoordinate, kMostCoordinate);
   odometry.reading.V_B.wz = Number(5, "rv", -kMostCoordinate, kMostCoordinate);
-  odometry.time = InOrder(Time(), &last_odometry_);
+  const double time = Time();
+  if (RepeatsLastScan(odometry.reading.X_OB, time)) {
+    ++num_repeated_;
+    return;
+  }
+  odometry.time = InOrder(time, &last_odometry_);
   log_.odometry.push_back(odometry);
+  lines_.odometry.push_back(line_);
+}
+
+/// Mappers write the pose that they found behind each scan, as odometry of no time.
+bool CarmenReader::RepeatsLastScan(const Pose2& pose, double time) const {
+  if (time != 0.0 || log_.scans.empty() || log_.scans.back().time == 0.0) return false;
+  const RobotLog::Scan& last = log_.scans.back();
+  const auto is_equal = [&](const Pose2& other) {
+    return (other.position() - pose.position()).norm() <= kSamePose &&
+           std::abs(geometry::WrapToPi(other.yaw - pose.yaw)) <= kSamePose;
+  };
+  return is_equal(*last.X_OB) || is_equal(*last.X_OB * last.X_BL);
 }
 
 bool CarmenReader::IsOfTheFirstKind() {
@@ -258,6 +280,7 @@ void CarmenReader::AddScan(RobotLog::Scan scan) {
                        std::abs(geometry::WrapToPi(scan.X_BL.yaw - first.yaw)) <= kSameMounting;
   if (!is_same || scan.X_BL.position().norm() > kFarthestMounting) is_corrected_ = true;
   log_.scans.push_back(std::move(scan));
+  lines_.scans.push_back(line_);
 }
 
 /// @param count  of the words before those of the time.
@@ -343,6 +366,15 @@ std::vector<float> CarmenReader::Ranges(std::size_t first, std::size_t count,
 
 void CarmenReader::Finish() {
   RefuseWhatIsTooOdd();
+  if (num_repeated_ > 0) {
+    Warn(
+        fmt::format("{} lines ODOM of time 0 repeat the pose of the scan before them, as where a "
+                    "mapper has corrected the log: passed over",
+                    num_repeated_));
+  }
+  for (const std::string& what :
+       {SpreadEqualTimes(lines_, &log_), LeaveOutContradicting(lines_, &log_)})
+    if (!what.empty()) Warn(what);
   if (late_lines_ > 0) {
     Warn(fmt::format("{} lines are older than one before them, by up to {:.3f} s; put in order",
                      late_lines_, latest_));

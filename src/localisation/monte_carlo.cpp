@@ -8,7 +8,7 @@
 
 #include "hires/base/error.h"
 #include "hires/geometry/angles.h"
-#include "hires/robot/odometry_jump.h"
+#include "hires/robot/odometry_jumps.h"
 #include "localisation/beams.h"
 #include "localisation/belief_summary.h"
 #include "localisation/likelihood_field.h"
@@ -114,6 +114,7 @@ class MonteCarloLocalisation::Belief {
   Belief(const world::OccupancyGrid& grid, const MonteCarloParams& params, base::Rng rng)
       : map_(std::make_shared<KnownMap>(grid, params.laser_likelihood_max_dist)),
         params_(params),
+        jumps_(params.max_linear_speed, params.max_angular_speed),
         beam_params_{params.laser_max_beams, params.laser_min_range, params.laser_max_range},
         rng_(rng) {
     SetPose(params.initial_pose, params.initial_variance.asDiagonal());
@@ -254,8 +255,7 @@ class MonteCarloLocalisation::Belief {
     const Pose2 step = seen_->X_OB.Inverse() * X_OB;
     const double duration = time - seen_->time;
     if (duration < 0.0 && duration > -robot::kClockReset) return ScanOutcome::kLate;
-    const bool is_jump =
-        robot::IsOdometryJump(step, duration, params_.max_linear_speed, params_.max_angular_speed);
+    const bool is_jump = duration >= 0.0 && jumps_.IsJump(step, duration);
     if (duration < 0.0 || is_jump) {
       used_ = OdometryAnchor{time, X_OB * (seen_->X_OB.Inverse() * used_->X_OB)};
       if (last_scan_) last_scan_ = std::min(*last_scan_, time);
@@ -392,6 +392,7 @@ class MonteCarloLocalisation::Belief {
 
   std::shared_ptr<const KnownMap> map_;
   MonteCarloParams params_;
+  robot::OdometryJumps jumps_;
   BeamParams beam_params_;
   base::Rng rng_;
   Particles particles_;

@@ -1,16 +1,21 @@
 #include "hires/localisation/log_file.h"
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <cstring>
 #include <fstream>
+#include <functional>
 #include <iterator>
 
 #include "hires/base/error.h"
 #include "hires/base/log.h"
+#include "hires/base/rng.h"
 #include "hires/geometry/angles.h"
+#include "hires/robot/odometry_jump.h"
+#include "support/rounds.h"
 #include "support/temporary_folder.h"
 
 namespace hires::localisation::log_file_test {
@@ -154,6 +159,103 @@ TEST_F(LogFileTest, CorrectedLogHasItsLaserWhereAParameterSays) {
     EXPECT_EQ(scan.X_BL.yaw, 0.0);
   }
   EXPECT_EQ(log.odometry[1].reading.X_OB.x, 4.0) << "odometry stays as it was";
+}
+
+/// A drive as a logger writes it: ODOM and FLASER by turns, each with its time.
+struct Drive {
+  explicit Drive(base::Rng rng) {
+    Pose2 X_OB{rng.Uniform(-5.0, 5.0), 0.0, rng.Uniform(-kPi, kPi)};
+    double time = 1.0e9;
+    for (int i = 0; i < 60; ++i) {
+      X_OB = X_OB * Pose2{rng.Uniform(0.0, 0.2), 0.0, rng.Uniform(-0.2, 0.2)};
+      poses.push_back(X_OB);
+      times.push_back(time += rng.Uniform(0.1, 0.4));
+    }
+  }
+  /// @param time_text  how a time is written.  @param scan_pose  what a scan says of its own place.
+  std::string Text(const std::function<std::string(double)>& time_text,
+                   const std::function<Pose2(const Pose2&)>& scan_pose = {},
+                   const std::string& behind_scan = "") const {
+    std::string text;
+    for (std::size_t i = 0; i < poses.size(); ++i) {
+      const Pose2 own = scan_pose ? scan_pose(poses[i]) : poses[i];
+      const std::string place = fmt::format("{} {} {}", own.x, own.y, own.yaw);
+      const std::string end = fmt::format(" {} nohost 0\n", time_text(times[i]));
+      text += fmt::format("ODOM {} {} {} 0 0 0", poses[i].x, poses[i].y, poses[i].yaw) + end;
+      text += fmt::format("FLASER 2 1.5 2.5 {} {}", place, place) + end;
+      if (!behind_scan.empty()) text += fmt::format(fmt::runtime(behind_scan), place);
+    }
+    return text;
+  }
+  std::vector<Pose2> poses;
+  std::vector<double> times;
+};
+
+std::string Exactly(double time) { return fmt::format("{:.6f}", time); }
+
+TEST_F(LogFileTest, TimesThatDoNotAdvanceAreMadeUpInTheOrderOfLines) {
+  const std::function<std::string(double)> kinds[] = {
+      [](double) { return std::string("0"); },
+      [](double time) { return fmt::format("{:.6g}", time); },
+      [](double time) { return fmt::format("{:.0f}", std::floor(time)); },
+      [](double time) { return fmt::format("{:.0f}", 10.0 * std::floor(time / 10.0)); }};
+  for (int round = 0; round < hires::test_support::Rounds(40); ++round) {
+    SCOPED_TRACE(round);
+    const Drive drive(base::Rng(5).Fork(round));
+    warnings_.clear();
+    const RobotLog log = Read(drive.Text(kinds[round % 4]));
+    EXPECT_THAT(warnings_, HasSubstr("times do not advance"));
+    ASSERT_EQ(log.odometry.size(), drive.poses.size());
+    ASSERT_EQ(log.scans.size(), drive.poses.size());
+    for (std::size_t i = 0; i < log.odometry.size(); ++i) {
+      EXPECT_EQ(log.odometry[i].reading.X_OB.x, drive.poses[i].x) << "in the order of lines";
+      EXPECT_GT(log.scans[i].time, log.odometry[i].time);
+      if (i == 0) continue;
+      const double passed = log.odometry[i].time - log.odometry[i - 1].time;
+      EXPECT_GT(log.odometry[i].time, log.scans[i - 1].time);
+      EXPECT_FALSE(robot::IsOdometryJump(drive.poses[i - 1].Inverse() * drive.poses[i], passed,
+                                         robot::kFastestDrive, robot::kFastestTurn));
+    }
+  }
+}
+
+TEST_F(LogFileTest, TimesThatAdvanceStayAsTheyAre) {
+  const Drive drive(base::Rng(6));
+  const RobotLog log = Read(drive.Text(Exactly));
+  EXPECT_EQ(warnings_, "");
+  for (std::size_t i = 0; i < log.scans.size(); ++i)
+    EXPECT_NEAR(log.scans[i].time, drive.times[i], 1e-6);
+}
+
+TEST_F(LogFileTest, PosesOfScansThatContradictTheOdometryAreLeftOut) {
+  const std::function<Pose2(const Pose2&)> kinds[] = {
+      [](const Pose2&) { return Pose2{}; },
+      [](const Pose2& X_OB) {
+        return Pose2{3.0 * X_OB.x, 3.0 * X_OB.y, X_OB.yaw};
+      }};
+  const Drive drive(base::Rng(7));
+  for (const auto& own : kinds) {
+    warnings_.clear();
+    const RobotLog log = Read(drive.Text(Exactly, own));
+    EXPECT_THAT(warnings_, HasSubstr("odometry is that of the lines ODOM"));
+    for (const RobotLog::Scan& scan : log.scans) EXPECT_FALSE(scan.X_OB);
+  }
+  warnings_.clear();
+  const Pose2 elsewhere{7.0, -3.0, 2.0};  // another frame is no contradiction
+  const RobotLog log = Read(drive.Text(Exactly, [&](const Pose2& X) { return elsewhere * X; }));
+  EXPECT_EQ(warnings_, "");
+  for (const RobotLog::Scan& scan : log.scans) EXPECT_TRUE(scan.X_OB);
+}
+
+TEST_F(LogFileTest, WhatAMapperWroteBehindEachScanIsPassedOver) {
+  const Drive drive(base::Rng(8));
+  const RobotLog plain = Read(drive.Text(Exactly));
+  const RobotLog log =
+      Read(drive.Text(Exactly, {}, "ODOM {} 0 0 0 0 nohost 0\nNEFF 12.5 0 nohost 0\n"));
+  EXPECT_THAT(warnings_, HasSubstr("60 lines ODOM of time 0 repeat the pose of the scan"));
+  ASSERT_EQ(log.odometry.size(), plain.odometry.size());
+  for (std::size_t i = 0; i < log.odometry.size(); ++i)
+    EXPECT_EQ(log.odometry[i].time, plain.odometry[i].time);
 }
 
 TEST_F(LogFileTest, OneKindOfScansIsTaken) {

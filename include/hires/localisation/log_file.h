@@ -35,9 +35,15 @@ namespace hires::localisation {
 /// between lines, a mapper has corrected the log: then PARAM robot_frontlaser_offset says it (0
 /// where it is missing, CARMEN's default), with a warning.
 ///
+/// Where times do not advance over the drive (all equal, or rounded to steps far longer than a
+/// scan), readings are taken in the order of their lines at times that are made up, with a warning.
+///
 /// Odometry is that of the lines ODOM; without any, that of the scans, with velocities from
-/// differences. A log that has FLASER and ROBOTLASER1 gives the scans of what comes first.
-/// What is no number, negative or below range_min is kept in a scan as NaN.
+/// differences. Scans keep their own where it agrees with the lines ODOM; else it is left out, with
+/// a warning. Lines ODOM of time 0 that repeat the pose of the scan before them, as mappers write
+/// them into logs that they correct, are passed over, with a warning. A log that has FLASER and
+/// ROBOTLASER1 gives the scans of what comes first. What is no number, negative or below range_min
+/// is kept in a scan as NaN.
 ///
 /// @throws base::ConfigError naming file and line, what came and what was wanted: no such file,
 /// more lines that cannot be read than 1 %, one of those two parameters that is no number, absurd
