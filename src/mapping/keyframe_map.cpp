@@ -24,6 +24,8 @@ constexpr double kSettles = 0.3;      // [m] by which refining may move what was
 constexpr double kSameHeading = 1.0;  // [rad]
 constexpr double kDrift = 0.05;       // [m / m] of a map that is not tied together
 constexpr double kYawDrift = 0.004;   // [rad / m]
+constexpr double kTies = 0.1;         // [m] sd of a place seen before that ties the map together
+const Eigen::Vector3d kUnknownStep(1.0, 1.0, 0.3), kUnknownPlace(30.0, 30.0, 3.0);
 const Eigen::Vector3d kEdgeFloor(0.01, 0.01, 0.003);  // [m], [m], [rad] sd of the best match
 
 double AngleBetween(const Pose2& a, const Pose2& b) {
@@ -34,12 +36,13 @@ double DistanceBetween(const Pose2& a, const Pose2& b) {
 }
 
 /// What the match of `to` with places about `from` says of the two.
-PoseGraph::Edge EdgeOf(int from, int to, const Pose2& X_MF, const ScanMatch& match) {
+/// @param unknown_sd  [m], [rad] where nothing is known at all.
+PoseGraph::Edge EdgeOf(int from, int to, const Pose2& X_MF, const ScanMatch& match,
+                       const Eigen::Vector3d& unknown_sd) {
   Eigen::Matrix3d turn = Eigen::Matrix3d::Identity();  // map to `from`
   turn.topLeftCorner<2, 2>() = Eigen::Rotation2Dd(-X_MF.yaw).toRotationMatrix();
-  // Where nothing is known at all, 1 m and 0.3 rad.
   const Eigen::Matrix3d information =
-      match.information + Eigen::Vector3d(1.0, 1.0, 10.0).asDiagonal().toDenseMatrix();
+      match.information + unknown_sd.cwiseAbs2().cwiseInverse().asDiagonal().toDenseMatrix();
   Eigen::Matrix3d covariance = turn * information.inverse() * turn.transpose();
   covariance.diagonal() += kEdgeFloor.cwiseAbs2();
   return {from, to, X_MF.Inverse() * match.X_MB, covariance.inverse()};
@@ -48,7 +51,8 @@ PoseGraph::Edge EdgeOf(int from, int to, const Pose2& X_MF, const ScanMatch& mat
 /// Whether walls tell of the shift that a match asks for, as those of a corridor do not along it.
 bool IsTold(const Pose2& X_before, const ScanMatch& match) {
   const Eigen::Vector2d along = (match.X_MB.position() - X_before.position()).normalized();
-  const Eigen::Matrix3d covariance = match.information.inverse();
+  const Eigen::Matrix3d covariance =
+      (match.information + 1e-6 * Eigen::Matrix3d::Identity()).inverse();
   return along.dot(covariance.topLeftCorner<2, 2>() * along) <= kToldSd * kToldSd;
 }
 
@@ -62,7 +66,10 @@ std::optional<ScanMatch> KeyframeMap::Match(const SurfacePoints& few,
     const SearchWindow window{0.3 + prior.position_sd, 0.15 + prior.yaw_sd};
     const Pose2 found = SearchMatch(*local_, few, prior.X_MB, window);
     const ScanMatch other = RefineMatch(*local_, few, found, std::nullopt, params_.surface_sd);
-    if (other.fit > match.fit + kBetterFit) match = other;
+    if (other.fit > match.fit + kBetterFit) {
+      match = other;
+      match.is_searched = true;
+    }
   }
   return match.fit < kLostFit ? std::nullopt : std::make_optional(match);
 }
@@ -78,7 +85,7 @@ Pose2 KeyframeMap::Add(SurfacePoints points, SurfacePoints few, const ScanMatch&
                        double way) {
   const int k = graph_.AddPose(match.X_MB);
   keyframes_.push_back({std::move(points), std::move(few), way});
-  if (k > 0) graph_.AddEdge(EdgeOf(k - 1, k, graph_.pose(k - 1), match));
+  if (k > 0) graph_.AddEdge(EdgeOf(k - 1, k, graph_.pose(k - 1), match, kUnknownStep));
   if (k % kLoopEvery == 0) CloseLoop();
   RebuildLocalMap();
   return graph_.pose(k);
@@ -112,8 +119,9 @@ void KeyframeMap::CloseLoop() {
     const Pose2& X_before = graph_.pose(k);
     const bool is_large = DistanceBetween(X_before, match->X_MB) >= kLarge;
     if (is_large && !(IsTold(X_before, *match) && IsWitnessed(X_before, match->X_MB))) continue;
-    const PoseGraph::Edge edge = EdgeOf(*place, k, graph_.pose(*place), *match);
+    const PoseGraph::Edge edge = EdgeOf(*place, k, graph_.pose(*place), *match, kUnknownPlace);
     if (!graph_.CloseLoop(edge, is_large)) continue;
+    if (WorstPositionSd(*match) > kTies) return;  // along a corridor the map may still be off
     ++num_loops_;
     way_at_loop_ = keyframes_[k].way;
     return;

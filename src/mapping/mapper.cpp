@@ -1,5 +1,7 @@
 #include "hires/mapping/mapper.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <deque>
@@ -11,7 +13,7 @@
 #include "hires/base/error.h"
 #include "hires/base/progress.h"
 #include "hires/geometry/angles.h"
-#include "hires/robot/odometry_jump.h"
+#include "hires/robot/odometry_jumps.h"
 #include "mapping/draw_grid.h"
 #include "mapping/keyframe_map.h"
 #include "mapping/odometry_track.h"
@@ -25,6 +27,10 @@ using localisation::RobotLog;
 constexpr double kMatchSpacing = 0.05;  // [m] between points that are matched
 constexpr double kJumpSd = 0.3;         // [m], [rad] after a reset of the odometry
 constexpr double kUntoldSd = 0.1;       // [m], [rad] between scans without odometry
+constexpr double kSearchedSd = 0.05;    // [m], [rad] of a pose that was searched for
+constexpr double kFitsNothing = 0.9;    // share of scans from which on there is no map
+constexpr double kUsualRange = 3.0;     // [m] in rooms
+constexpr double kSuspicious = 20.0;    // [m] more than that in the median is another unit
 constexpr double kDrawnStep = 0.05;     // [m], [rad] between scans that are drawn
 
 bool IsFarFrom(const Pose2& a, const Pose2& b, double step) {
@@ -41,6 +47,27 @@ ScanMatch ByOdometry(const PosePrior& prior) {
   return match;
 }
 
+/// " Are ranges in centimetres? ..." where their median is one of no room; else nothing.
+std::string QuestionOfUnits(const RobotLog& log) {
+  std::vector<float> ranges;
+  for (const RobotLog::Scan& scan : log.scans) {
+    for (const float range : scan.reading.ranges)
+      if (std::isfinite(range) && range > 0.0F) ranges.push_back(range);
+  }
+  if (ranges.empty()) return "";
+  const auto middle = ranges.begin() + static_cast<std::ptrdiff_t>(ranges.size() / 2);
+  std::nth_element(ranges.begin(), middle, ranges.end());
+  if (*middle < kSuspicious) return "";
+  const auto distance = [&](double unit) {
+    return std::abs(std::log(*middle / unit / kUsualRange));
+  };
+  const bool is_centimetres = distance(100.0) < distance(1000.0);
+  return fmt::format(
+      "; half of its ranges are longer than {:.0f}, wanted metres: are they in {}? Divide them by "
+      "{}",
+      *middle, is_centimetres ? "centimetres" : "millimetres", is_centimetres ? 100 : 1000);
+}
+
 }  // namespace
 
 class Mapper::Impl {
@@ -48,6 +75,7 @@ class Mapper::Impl {
   explicit Impl(const MapperParams& params)
       : params_(params),
         track_(params.max_linear_speed, params.max_angular_speed),
+        jumps_(params.max_linear_speed, params.max_angular_speed),
         keyframes_(params),
         X_MB_(params.X_MBegin) {}
 
@@ -93,6 +121,7 @@ class Mapper::Impl {
 
   MapperParams params_;
   OdometryTrack track_;
+  robot::OdometryJumps jumps_;          // of what scans say themselves
   std::deque<RobotLog::Scan> waiting_;  // for odometry
   double last_time_{std::numeric_limits<double>::lowest()};
 
@@ -139,6 +168,8 @@ void Mapper::Impl::TakeScan(const RobotLog::Scan& scan) {
   if (!match && keyframes_.size() > 0) ++num_lost_;
   X_MB_ = match ? match->X_MB : prior.X_MB;
   const bool is_due = !points.empty() && keyframes_.IsDue(X_MB_);
+  // Else the next slip of the odometry would be looked for from here on, beside this one.
+  if (match && match->is_searched) anchor_ = {X_MB_, scan.X_OB, kSearchedSd};
   if (keyframes_.size() == 0 || is_due) {
     X_MB_ =
         keyframes_.Add(std::move(points), std::move(few), match ? *match : ByOdometry(prior), way_);
@@ -152,8 +183,7 @@ void Mapper::Impl::TakeScan(const RobotLog::Scan& scan) {
 PosePrior Mapper::Impl::Predict(const RobotLog::Scan& scan) {
   const bool is_told = X_OB_ && scan.X_OB;
   const Pose2 moved = is_told ? X_OB_->Inverse() * *scan.X_OB : Pose2{};
-  const bool is_jump = robot::IsOdometryJump(moved, scan.time - time_, params_.max_linear_speed,
-                                             params_.max_angular_speed);
+  const bool is_jump = is_told && jumps_.IsJump(moved, scan.time - time_);
   if (is_jump) ++odometry_jumps_;
   if (is_jump || !is_told) anchor_ = {X_MB_, scan.X_OB, is_jump ? kJumpSd : kUntoldSd};
   if (!is_jump) way_ += moved.position().norm();
@@ -220,7 +250,8 @@ MapResult MakeMap(const RobotLog& log, const MapperParams& params, const std::st
   });
   if (!has_met) {
     throw base::ConfigError(
-        "no scan of the log measured anything; wanted a drive on which a laser met walls");
+        "no scan of the log measured anything; wanted a drive on which a laser met walls" +
+        QuestionOfUnits(log));
   }
   Mapper mapper(params);
   auto odometry = log.odometry.begin();
@@ -231,6 +262,12 @@ MapResult MakeMap(const RobotLog& log, const MapperParams& params, const std::st
     base::ReportProgress(task, static_cast<double>(i) / log.scans.size());
   }
   for (; odometry != log.odometry.end(); ++odometry) mapper.AddOdometry(*odometry);
+  const int num_lost = mapper.counts().num_lost;
+  if (num_lost > kFitsNothing * static_cast<double>(log.scans.size())) {
+    throw base::ConfigError(
+        fmt::format("{} of {} scans fit nothing that was seen before, so there is no map{}",
+                    num_lost, log.scans.size(), QuestionOfUnits(log)));
+  }
   MapResult result = mapper.Result();
   base::ReportProgress(task, 1.0);
   return result;

@@ -1,7 +1,6 @@
 #include "mapping/odometry_track.h"
 
 #include "hires/base/check.h"
-#include "hires/robot/odometry_jump.h"
 
 namespace hires::mapping {
 
@@ -12,8 +11,7 @@ void OdometryTrack::Add(double time, const geometry::Pose2& X_OB) {
   if (!readings_.empty()) {
     const Reading& last = readings_.back();
     reading.num_resets = last.num_resets;
-    if (robot::IsOdometryJump(X_OB_.Inverse() * X_OB, time - last.time, max_linear_speed_,
-                              max_angular_speed_)) {
+    if (jumps_.IsJump(X_OB_.Inverse() * X_OB, time - last.time)) {
       ++reading.num_resets;
       X_FO_ = last.reading.X_OB * X_OB.Inverse();
     }

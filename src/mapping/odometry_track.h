@@ -4,6 +4,7 @@
 #include <optional>
 
 #include "hires/localisation/robot_log.h"
+#include "hires/robot/odometry_jumps.h"
 
 namespace hires::mapping {
 
@@ -13,7 +14,7 @@ class OdometryTrack {
  public:
   /// @param max_linear_speed, max_angular_speed  [m/s], [rad/s] faster odometry was reset.
   OdometryTrack(double max_linear_speed, double max_angular_speed)
-      : max_linear_speed_(max_linear_speed), max_angular_speed_(max_angular_speed) {}
+      : jumps_(max_linear_speed, max_angular_speed) {}
 
   /// @pre times do not go back.
   void Add(double time, const geometry::Pose2& X_OB);
@@ -32,7 +33,7 @@ class OdometryTrack {
   struct Reading : localisation::RobotLog::Odometry {
     int num_resets{0};  // up to it
   };
-  double max_linear_speed_, max_angular_speed_;
+  robot::OdometryJumps jumps_;
   std::deque<Reading> readings_;
   geometry::Pose2 X_OB_;                 // last reading as it came
   std::optional<geometry::Pose2> X_FO_;  // its frame in the first one, after a reset

@@ -1,7 +1,9 @@
 #include "mapping/scan_matcher.h"
 
 #include <Eigen/Dense>
+#include <Eigen/Eigenvalues>
 #include <cmath>
+#include <vector>
 
 #include "hires/geometry/angles.h"
 
@@ -12,10 +14,17 @@ using geometry::Pose2;
 
 constexpr int kMostIterations = 20;
 constexpr double kFits = 0.1;             // [m] from a point to its wall
+constexpr double kParallel = 0.3;         // [rad] between faces that count as parallel
 constexpr double kRobust = 3.0;           // sd from which on a distance counts less
 constexpr double kMatchConverged = 1e-4;  // [m], [rad]
 constexpr double kCentreBonus = 0.05;     // of nearness, over the window
 constexpr std::size_t kMostSearchPoints = 150;
+
+/// A point on the piece of wall that is nearest to it.
+struct Pair {
+  const SurfaceMap::Piece* piece;
+  Eigen::Vector2d r;  // [m] from the base, along the map's axes
+};
 
 /// Normal equations of all points and the prior about a pose.
 struct Equations {
@@ -34,9 +43,19 @@ void AddPrior(const PosePrior& prior, const Pose2& X_MB, Equations* equations) {
   equations->gradient += weights.cwiseProduct(error);
 }
 
+/// Across which the fewest walls stand.
+Eigen::Vector2d LeastTold(const std::vector<Pair>& pairs) {
+  Eigen::Matrix2d spread = Eigen::Matrix2d::Zero();
+  for (const Pair& pair : pairs) spread += pair.piece->n * pair.piece->n.transpose();
+  Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> solver;
+  solver.computeDirect(spread);
+  return solver.eigenvectors().col(0);
+}
+
 Equations EquationsAt(const SurfaceMap& map, const SurfacePoints& points, const Pose2& X_MB,
                       double surface_sd) {
   Equations equations;
+  std::vector<Pair> pairs;
   const double c = std::cos(X_MB.yaw), s = std::sin(X_MB.yaw);
   Eigen::Matrix2d R;
   R << c, -s, s, c;
@@ -45,13 +64,18 @@ Equations EquationsAt(const SurfaceMap& map, const SurfacePoints& points, const 
     ++equations.num_facing;
     const Eigen::Vector2d r = R * point.p, p = r + X_MB.position();
     const SurfaceMap::Piece* piece = map.Nearest(p, R * point.n);
-    if (piece == nullptr) continue;
-    const double distance = piece->n.dot(p - piece->p);
+    if (piece != nullptr) pairs.push_back({piece, r});
+  }
+  const Eigen::Vector2d least = LeastTold(pairs);
+  for (const auto& [piece, r] : pairs) {
+    const double distance = piece->n.dot(r + X_MB.position() - piece->p);
     if (std::abs(distance) < kFits) ++equations.num_fitting;
     const double sds = std::abs(distance) / surface_sd;
     const double weight = (sds <= kRobust ? 1.0 : kRobust / sds) / (surface_sd * surface_sd);
-    const Eigen::Vector3d J(piece->n.x(), piece->n.y(),
-                            piece->n.dot(Eigen::Vector2d(-r.y(), r.x())));
+    const double along = least.dot(piece->n);
+    const Eigen::Vector2d told =
+        std::abs(along) < kParallel ? Eigen::Vector2d(piece->n - along * least) : piece->n;
+    const Eigen::Vector3d J(told.x(), told.y(), piece->n.dot(Eigen::Vector2d(-r.y(), r.x())));
     equations.hessian += weight * J * J.transpose();
     equations.gradient += weight * distance * J;
   }
@@ -108,6 +132,15 @@ class GridSearch {
 };
 
 }  // namespace
+
+double WorstPositionSd(const ScanMatch& match) {
+  // By far less than any wall tells: a singular matrix has an inverse then.
+  const Eigen::Matrix3d damped = match.information + 1e-6 * Eigen::Matrix3d::Identity();
+  const Eigen::Matrix2d covariance = damped.inverse().topLeftCorner<2, 2>();
+  Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> solver;
+  solver.computeDirect(covariance);
+  return std::sqrt(std::max(solver.eigenvalues()[1], 0.0));
+}
 
 ScanMatch RefineMatch(const SurfaceMap& map, const SurfacePoints& points, const Pose2& guess,
                       const std::optional<PosePrior>& prior, double surface_sd) {

@@ -16,11 +16,18 @@ struct PosePrior {
 struct ScanMatch {
   geometry::Pose2 X_MB;
   double fit{0.0};  ///< share of the points with normals that lie within 0.1 m on a piece of wall
-  /// Inverse of the covariance of x, y [m] in map and yaw [rad]; prior included.
+  /// Inverse of the covariance of x, y [m] in map and yaw [rad]; prior included. Singular where
+  /// neither walls nor a prior tell of a direction.
   Eigen::Matrix3d information{Eigen::Matrix3d::Zero()};
+  bool is_searched{false};  ///< beyond what odometry allows
 };
 
-/// From `guess`, by Gauss-Newton on the distances of points to pieces of wall.
+/// [m] sd of the position in the direction of which least is known.
+double WorstPositionSd(const ScanMatch& match);
+
+/// From `guess`, by Gauss-Newton on the distances of points to pieces of wall. Normals have noise,
+/// which along a hall would add up to more than its few other walls tell: faces that are turned by
+/// less than 0.3 rad against most of the others count as parallel to them, and tell nothing along.
 /// @param surface_sd  [m] of a point about its wall.
 ScanMatch RefineMatch(const SurfaceMap& map, const SurfacePoints& points,
                       const geometry::Pose2& guess, const std::optional<PosePrior>& prior,

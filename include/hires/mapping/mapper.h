@@ -60,7 +60,7 @@ class Mapper {
   ~Mapper();
   Mapper(Mapper&&) noexcept;
 
-  /// @pre times do not go back.  A reset, in position or heading (robot::IsOdometryJump),
+  /// @pre times do not go back.  A reset, in position or heading (robot::OdometryJumps),
   /// counts as no motion.
   void AddOdometry(const localisation::RobotLog::Odometry& odometry);
 
@@ -86,7 +86,8 @@ class Mapper {
 
 /// The whole of a log at once.
 /// @param task  what people are told who wait for it (base/progress.h).
-/// @throws base::ConfigError if it has no scan that measured anything, or as Mapper::Result.
+/// @throws base::ConfigError if it has no scan that measured anything, if more than nine scans in
+/// ten fit nothing, or as Mapper::Result.
 MapResult MakeMap(const localisation::RobotLog& log, const MapperParams& params = {},
                   const std::string& task = "mapping");
 
