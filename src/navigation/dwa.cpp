@@ -14,6 +14,7 @@
 #include "navigation/oscillation_guard.h"
 #include "navigation/swept_footprint.h"
 #include "navigation/velocity_window.h"
+#include "navigation/way_manoeuvre.h"
 
 namespace hires::navigation {
 namespace {
@@ -98,7 +99,8 @@ struct DwaPlanner::Impl {
         guard_(params.oscillation_reset_distance, params.oscillation_reset_angle,
                params.min_linear_velocity),
         watch_(params),
-        approach_(params) {}
+        approach_(params),
+        manoeuvre_(params) {}
 
   void SetPath(const std::vector<geometry::Pose2>& path);
   DwaResult Update(const Costmap& costmap, const geometry::Pose2& X_MB,
@@ -109,6 +111,9 @@ struct DwaPlanner::Impl {
   std::vector<geometry::Twist2> NextVelocities(const geometry::Twist2& V_B) const;
   bool PrepareGrids(const Costmap& costmap, const geometry::Pose2& X_MB);
   void DropDrivenPath(const Eigen::Vector2d& p_MB);
+  std::size_t NearestOnPath(const Eigen::Vector2d& p_MB) const;
+  std::optional<DwaResult> Manoeuvre(const Costmap& costmap, const geometry::Pose2& X_MB,
+                                     const geometry::Twist2& V_B);
   std::vector<Candidate> ScoreDistances(const std::vector<geometry::Twist2>& velocities,
                                         const geometry::Pose2& X_MB, double resolution) const;
   std::optional<double> DistanceScore(const ArcEnds::End& end, double resolution) const;
@@ -156,6 +161,7 @@ struct DwaPlanner::Impl {
   OscillationGuard guard_;
   GoalWatch watch_;
   GoalApproach approach_;
+  WayManoeuvre manoeuvre_;
 
   std::vector<Eigen::Vector2d> path_;  // dense
   std::size_t first_{0};               // of path_ that is not yet well behind the robot
@@ -178,7 +184,9 @@ void DwaPlanner::Impl::SetPath(const std::vector<geometry::Pose2>& path) {
   path_ = PointsAlong(path, params_.sim_granularity);
   first_ = 0;
   const geometry::Pose2 X_GoalNew = X_MGoal_.Inverse() * path.back();
-  if (X_GoalNew.position().norm() > kRoomReached) num_missed_ = 0;  // another goal
+  const bool is_same_goal = X_GoalNew.position().norm() <= kRoomReached;
+  if (!is_same_goal) num_missed_ = 0;
+  manoeuvre_.SetWay(is_same_goal);
   X_MGoal_ = path.back();
   guard_.Reset();
   num_blocked_ = 0;
@@ -196,6 +204,9 @@ void DwaPlanner::Impl::LeaveGoal() {
 DwaResult DwaPlanner::Impl::Update(const Costmap& costmap, const geometry::Pose2& X_MB,
                                    const geometry::Twist2& V_B) {
   DropDrivenPath(X_MB.position());
+  if (manoeuvre_.is_active()) {
+    if (const auto result = Manoeuvre(costmap, X_MB, V_B)) return *result;
+  }
   if (approach_.is_active()) {
     if (const auto result = CloseIn(costmap, X_MB, V_B)) return *result;
   }
@@ -206,7 +217,25 @@ DwaResult DwaPlanner::Impl::Update(const Costmap& costmap, const geometry::Pose2
     approach_.BeginTo(X_MGoal_);
     if (const auto result = CloseIn(costmap, X_MB, V_B)) return *result;
   }
-  return Drive(costmap, X_MB, V_B);
+  if (CanMoveSideways()) return Drive(costmap, X_MB, V_B);
+  if (const auto result = Manoeuvre(costmap, X_MB, V_B)) return *result;
+  const DwaResult result = Drive(costmap, X_MB, V_B);
+  if (result.status != DwaStatus::kNoValidTrajectory) return result;
+  manoeuvre_.Stand();
+  return Manoeuvre(costmap, X_MB, V_B).value_or(result);
+}
+
+/// None: the window drives.
+std::optional<DwaResult> DwaPlanner::Impl::Manoeuvre(const Costmap& costmap,
+                                                     const geometry::Pose2& X_MB,
+                                                     const geometry::Twist2& V_B) {
+  using Next = WayManoeuvre::Next;
+  const std::size_t nearest = NearestOnPath(X_MB.position());
+  const auto step = manoeuvre_.Update(costmap, X_MB, V_B, path_, nearest, &sweeps_);
+  if (step.next == Next::kBrake) return Brake(costmap, X_MB, V_B);
+  if (step.next == Next::kNothing) return std::nullopt;
+  guard_.Reset();
+  return DwaResult{DwaStatus::kDriving, step.velocity, 1};
 }
 
 /// Turning to the goal's heading may move the believed place by some cm. A base that moves sideways
@@ -237,6 +266,17 @@ void DwaPlanner::Impl::DropDrivenPath(const Eigen::Vector2d& p_MB) {
     return (point - p_MB).norm() < kKeptBehind;
   });
   if (near != path_.end()) first_ = near - path_.begin();
+}
+
+/// Of what lies a little ahead: behind a wall the path may come back.
+std::size_t DwaPlanner::Impl::NearestOnPath(const Eigen::Vector2d& p_MB) const {
+  const auto count = static_cast<std::size_t>(kLocalHalfWidth / params_.sim_granularity);
+  const auto end = path_.begin() + std::min(path_.size(), first_ + count);
+  const auto nearest =
+      std::min_element(path_.begin() + first_, end, [&](const auto& a, const auto& b) {
+        return (a - p_MB).squaredNorm() < (b - p_MB).squaredNorm();
+      });
+  return nearest - path_.begin();
 }
 
 // ---- on the way -------------------------------------------------------------------------------
@@ -532,6 +572,7 @@ void DwaPlanner::SetMotionSet(const robot::MotionSet& limits) {
   impl_->limits_ = limits;
   impl_->approach_.SetMotionSet(limits);
   impl_->watch_.SetMotionSet(limits);
+  impl_->manoeuvre_.SetMotionSet(limits);
 }
 
 void DwaPlanner::SetMargin(double margin) {

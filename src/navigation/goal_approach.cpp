@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "hires/geometry/angles.h"
 #include "hires/navigation/car_follower.h"
@@ -26,39 +27,53 @@ constexpr double kSpeed = 0.3;             // [m/s] at most
 constexpr double kDeceleration = 0.5;      // [m/s^2] at most ...
 constexpr double kTurnDeceleration = 1.0;  // [rad/s^2]
 constexpr double kBrakingShare = 0.5;      // of the motion set's, so that what lags keeps up
+constexpr double kBackOnLine = 0.5;        // [m] of way to come back onto a line, ...
+constexpr double kMostTowards = 0.15;      // [rad] ... headed towards it by that at most
 constexpr double kReaction = 0.2;          // [s] from what is seen to what the wheels do of it
 
 }  // namespace
 
-GoalWatch::GoalWatch(const DwaParams& params)
-    : near_(kNear * params.xy_goal_tolerance), period_(params.control_period), closer_(kCloser) {
+ProgressWatch::ProgressWatch(const DwaParams& params, double patience)
+    : period_(params.control_period), patience_(patience), closer_(kCloser) {
   Reset();
 }
 
-void GoalWatch::Reset() {
+void ProgressWatch::Reset() {
   least_ = std::numeric_limits<double>::infinity();
   since_ = 0.0;
 }
 
-void GoalWatch::SetMotionSet(const robot::MotionSet& limits) {
+void ProgressWatch::SetMotionSet(const robot::MotionSet& limits) {
   const double slowest =
       std::min(limits.max_linear_velocity, kTurnWeight * limits.max_angular_velocity);
-  closer_ = std::min(kCloser, kShare * kPatience * slowest);
+  closer_ = std::min(kCloser, kShare * patience_ * slowest);
 }
 
-bool GoalWatch::Swings(const Pose2& X_MB, const Vector2d& p_MGoal) {
-  const Vector2d p_BGoal = X_MB.Inverse() * p_MGoal;
-  if (p_BGoal.norm() > near_) {
-    Reset();
-    return false;
-  }
-  const double left = p_BGoal.norm() + kTurnWeight * std::abs(std::atan2(p_BGoal.y(), p_BGoal.x()));
+bool ProgressWatch::Stalls(double left) {
   since_ += period_;
   if (left < least_ - closer_) {
     least_ = left;
     since_ = 0.0;
   }
-  return since_ > kPatience;
+  return since_ > patience_;
+}
+
+double LeftTo(const Pose2& X_MB, const Vector2d& p_M) {
+  const Vector2d p_B = X_MB.Inverse() * p_M;
+  return p_B.norm() + kTurnWeight * std::abs(std::atan2(p_B.y(), p_B.x()));
+}
+
+double NearGoal(const DwaParams& params) { return kNear * params.xy_goal_tolerance; }
+
+GoalWatch::GoalWatch(const DwaParams& params)
+    : near_(NearGoal(params)), watch_(params, kPatience) {}
+
+bool GoalWatch::Swings(const Pose2& X_MB, const Vector2d& p_MGoal) {
+  if ((X_MB.Inverse() * p_MGoal).norm() > near_) {
+    Reset();
+    return false;
+  }
+  return watch_.Stalls(LeftTo(X_MB, p_MGoal));
 }
 
 double SpeedOfTurn(double angle, const robot::MotionSet& limits) {
@@ -93,6 +108,8 @@ GoalApproach::GoalApproach(const DwaParams& params) : params_(params) {}
 void GoalApproach::BeginTo(const Pose2& X_MGoal) {
   X_MGoal_ = X_MGoal;
   missing_M_.reset();
+  pieces_.clear();
+  has_pieces_ = false;
   commanded_ = {};
   stage_ = Stage::kStopping;
 }
@@ -102,13 +119,33 @@ void GoalApproach::BeginFrom(const Pose2& X_MB, const Pose2& X_MGoal) {
   missing_M_ = X_MGoal.position() - X_MB.position();
 }
 
+void GoalApproach::BeginAlong(std::vector<Piece> pieces) {
+  std::reverse(pieces.begin(), pieces.end());
+  pieces_ = std::move(pieces);
+  has_pieces_ = true;
+  missing_M_.reset();
+  commanded_ = {};
+  stage_ = Stage::kStopping;
+}
+
 Vector2d GoalApproach::Place(const Pose2& X_MB) const {
+  if (has_pieces_) return p_MTo_;
   return missing_M_ ? Vector2d(X_MB.position() + *missing_M_) : X_MGoal_.position();
+}
+
+/// False if something is in the way. Of pieces that was looked at when they were found.
+bool GoalApproach::Choose(const Costmap& costmap, const Pose2& X_MB, SweptFootprint* sweep) {
+  if (!has_pieces_) return ChooseOwn(costmap, X_MB, sweep);
+  yaw_ = pieces_.back().yaw;
+  sign_ = pieces_.back().sign;
+  p_MTo_ = pieces_.back().p_MTo;
+  pieces_.pop_back();
+  return true;
 }
 
 /// How it goes there: of front and back what takes less turning, before and after. False if
 /// something is in the way, or it could not turn there.
-bool GoalApproach::Choose(const Costmap& costmap, const Pose2& X_MB, SweptFootprint* sweep) {
+bool GoalApproach::ChooseOwn(const Costmap& costmap, const Pose2& X_MB, SweptFootprint* sweep) {
   p_MTo_ = Place(X_MB);
   const Vector2d way_M = p_MTo_ - X_MB.position();
   if (CanMoveSideways()) {
@@ -142,6 +179,16 @@ Twist2 GoalApproach::Turn(const Pose2& X_MB, const Twist2& V_B) const {
   return velocity;
 }
 
+/// [rad] Back onto its line, where that is longer than a few steps: as a base turned, its believed
+/// place moved by some cm.
+double GoalApproach::HeadingTowards(const Vector2d& p_MB, double left) const {
+  if (!has_pieces_) return yaw_;
+  const Vector2d to_left(-std::sin(yaw_), std::cos(yaw_));
+  const double beside = to_left.dot(p_MTo_ - p_MB);
+  const double turned = std::clamp(beside / kBackOnLine, -kMostTowards, kMostTowards);
+  return yaw_ + (left < 0.0 ? -turned : turned);
+}
+
 /// None: it is there.
 std::optional<Twist2> GoalApproach::Drive(const Pose2& X_MB, const Twist2& V_B) const {
   const Vector2d way_B = X_MB.Inverse() * p_MTo_;
@@ -157,10 +204,11 @@ std::optional<Twist2> GoalApproach::Drive(const Pose2& X_MB, const Twist2& V_B) 
   const double most = CanMoveSideways() ? std::min(kSpeed, params_.max_lateral_velocity) : kSpeed;
   const double speed =
       std::min({ApproachSpeed(left, deceleration, kReaction), most, limits_.max_linear_velocity});
+  const double heading = HeadingTowards(X_MB.position(), wanted.x());
   wanted *= speed / left;
   const double change = limits_.max_linear_acceleration * params_.control_period;
   const double turning =
-      Ramped(commanded_.wz, V_B.wz, SpeedOfTurn(geometry::WrapToPi(yaw_ - X_MB.yaw), limits_),
+      Ramped(commanded_.wz, V_B.wz, SpeedOfTurn(geometry::WrapToPi(heading - X_MB.yaw), limits_),
              limits_.max_angular_acceleration * params_.control_period);
   return Twist2{Ramped(commanded_.vx, V_B.vx, wanted.x(), change),
                 Ramped(commanded_.vy, V_B.vy, wanted.y(), change), turning};
@@ -185,12 +233,14 @@ GoalApproach::Step GoalApproach::Update(const Costmap& costmap, const Pose2& X_M
     }
   }
   if (stage_ == Stage::kDriving) {
-    const auto next = Drive(X_MB, V_B);
-    if (!next) {
+    if (const auto next = Drive(X_MB, V_B)) {
+      velocity = *next;
+    } else if (!pieces_.empty()) {
+      stage_ = Stage::kStopping;
+    } else {
       End();
       return {State::kArrived, {}};
     }
-    velocity = *next;
   }
   if (sweep->IsFree(costmap, X_MB, velocity,
                     TimeToCover(velocity, limits_, params_.control_period))) {

@@ -152,5 +152,37 @@ TEST(WholeDrivesTest, InAHouseEachArrives) {
   ExpectArrivals(test_support::House(), true, {12.0, 8.0}, 1);
 }
 
+/// Bases on two driven wheels that are nearly as wide as the doors of 0.9 m. What they touch, with
+/// a place that errs by up to 0.1 m, is a jamb.
+TEST(WholeDrivesTest, WideBasesComeThroughDoors) {
+  const world::World world = test_support::House();
+  int kind = 0, num_touched = 0;
+  const int legs = hires::test_support::Rounds(48);
+  for (const Eigen::Vector2d& size : {Eigen::Vector2d(0.75, 0.55), Eigen::Vector2d(0.6, 0.65)}) {
+    Base base = BaseOf("skid_steer", Drive::kDifferential, 0.05, 10.0);
+    const robot::BaseControllerParams controller = base.robot.profile.base_controller;
+    base.robot = test_support::BoxOnWheels(Drive::kDifferential, size);
+    base.robot.profile.base_controller = controller;
+    MoveBaseParams params;
+    params.place_margin = test_support::PlaceMarginOf(base.robot);
+    const auto scene = simulation::MakeScene(world, base.robot);
+    const auto context =
+        std::make_shared<const DrivingContext>(MakeDrivingContext(world, base.robot, params));
+    const base::Rng root = base::Rng(37).Fork(kind++);
+    for (int i = 0; i < legs; ++i) {
+      base::Rng rng = root.Fork(i);
+      const robot::MotionSet set = DrawnMotionSet(&rng);
+      const Leg leg = DrawnLeg(*context, 12.0, 8.0, &rng);
+      const PlayedLeg played = test_support::PlayLeg(scene, context, leg, set, rng.Fork(7));
+      if (played.contact) {
+        ++num_touched;
+      } else {
+        EXPECT_EQ(ToString(played.status.failure), "") << size.transpose() << " " << i;
+      }
+    }
+  }
+  EXPECT_LE(num_touched, 2 * legs / 10);
+}
+
 }  // namespace
 }  // namespace hires::skills::whole_drives_test

@@ -1,0 +1,264 @@
+#include "navigation/way_manoeuvre.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <queue>
+#include <tuple>
+#include <unordered_set>
+
+#include "hires/geometry/angles.h"
+#include "navigation/velocity_window.h"
+
+namespace hires::navigation {
+namespace {
+
+using Eigen::Vector2d;
+using geometry::Pose2;
+
+constexpr double kStuckPatience = 3.0;  // [s] without coming further, and between two searches
+constexpr int kMostManoeuvres = 4;      // for one goal
+constexpr double kFacedAhead = 0.5;     // [m] on the way to what the base shall face
+
+constexpr double kFurther = 1.0, kFurthest = 2.0;  // [m] along the way, where pieces may end,
+constexpr double kBeside = 0.1;                    // [m] so far beside it at most,
+constexpr double kOffHeading = 0.2;                // [rad] so far off its heading,
+constexpr double kChord = 0.3;                     // [m] which is that of so much of it
+constexpr double kPieceReach = 2.5;                // [m] from where it stands
+constexpr double kDriveStep = 0.1;                 // [m] of a drive
+constexpr int kHeadings = 36;                      // that are told apart
+constexpr double kTurnStep = 2.0 * geometry::kPi / kHeadings;
+constexpr double kPieceSquare = 0.05;  // [m] of squares that are told apart
+constexpr double kTurnCost = 0.3;      // [m/rad]
+constexpr double kPieceCost = 0.15;    // [m] of stopping between pieces
+constexpr int kMostExpansions = 4000;  // with each margin
+
+enum class Move { kNone, kTurnLeft, kTurnRight, kForward, kBackward };
+
+bool IsDrive(Move move) { return move == Move::kForward || move == Move::kBackward; }
+
+/// What a move is in one unit of time.
+geometry::Twist2 VelocityOf(Move move) {
+  if (IsDrive(move)) return {move == Move::kForward ? kDriveStep : -kDriveStep, 0.0, 0.0};
+  return {0.0, 0.0, move == Move::kTurnLeft ? kTurnStep : -kTurnStep};
+}
+
+struct PieceNode {
+  Pose2 X_MB;
+  int heading{0};         // in turn steps from the first one's
+  double cost{0.0};       // [m]
+  std::size_t margin{0};  // of the move there: index of a sweep
+  Move move{Move::kNone};
+  int parent{-1};
+};
+
+/// Lowest estimate first; of equal ones the one found first.
+struct OpenPiece {
+  double estimate;
+  int node;
+  bool operator<(const OpenPiece& other) const {
+    return std::tie(other.estimate, other.node) < std::tie(estimate, node);
+  }
+};
+
+/// A* over moves that keep a margin; where the base stands nearer to things, no less than the move
+/// before.
+class PieceSearch {
+ public:
+  PieceSearch(const Costmap& costmap, const Pose2& X_MB, const std::vector<Vector2d>& way,
+              std::vector<SweptFootprint>* sweeps)
+      : costmap_(costmap), X_MStart_(X_MB), sweeps_(sweeps) {
+    MeasureWay(way);
+  }
+
+  /// @param margin  index of a sweep
+  std::vector<Piece> Find(std::size_t margin) {
+    margin_ = margin;
+    nodes_.clear();
+    closed_.clear();
+    open_ = {};
+    PieceNode start;
+    start.X_MB = X_MStart_;
+    start.margin = MarginOf(X_MStart_, {}, 0);
+    if (start.margin == sweeps_->size()) return {};
+    Add(start);
+    for (int i = 0; i < kMostExpansions && !open_.empty(); ++i) {
+      const int at = open_.top().node;
+      open_.pop();
+      if (!closed_.insert(KeyOf(nodes_[at])).second) continue;
+      if (IsThere(nodes_[at].X_MB)) return PiecesTo(at);
+      for (const Move move : {Move::kForward, Move::kBackward, Move::kTurnLeft, Move::kTurnRight})
+        Expand(at, move);
+    }
+    return {};
+  }
+
+ private:
+  struct WayPoint {
+    Vector2d p_M;
+    double yaw;  // [rad] of the way there
+  };
+
+  /// The way as far as pieces may end, and from where on they may.
+  void MeasureWay(const std::vector<Vector2d>& way) {
+    std::vector<double> lengths{0.0};
+    for (std::size_t i = 1; i < way.size() && lengths.back() < kFurthest + kChord; ++i)
+      lengths.push_back(lengths.back() + (way[i] - way[i - 1]).norm());
+    const auto at = [&](double length) {
+      const auto found = std::lower_bound(lengths.begin(), lengths.end(), length);
+      return way[std::min<std::size_t>(found - lengths.begin(), lengths.size() - 1)];
+    };
+    for (std::size_t i = 0; i < lengths.size() && lengths[i] <= kFurthest; ++i) {
+      const Vector2d chord = at(lengths[i] + kChord) - at(std::max(0.0, lengths[i] - kChord));
+      way_.push_back({way[i], std::atan2(chord.y(), chord.x())});
+      if (lengths[i] < kFurther) first_end_ = i;
+    }
+  }
+
+  double DistanceTo(std::size_t i, const Pose2& X_MB) const {
+    return (way_[i].p_M - X_MB.position()).norm();
+  }
+
+  bool IsThere(const Pose2& X_MB) const {
+    std::size_t nearest = 0;
+    for (std::size_t i = 1; i < way_.size(); ++i)
+      if (DistanceTo(i, X_MB) < DistanceTo(nearest, X_MB)) nearest = i;
+    return nearest >= first_end_ && DistanceTo(nearest, X_MB) <= kBeside &&
+           std::abs(geometry::WrapToPi(way_[nearest].yaw - X_MB.yaw)) <= kOffHeading;
+  }
+
+  double Estimate(const Pose2& X_MB) const {
+    const double turn = std::abs(geometry::WrapToPi(way_[first_end_].yaw - X_MB.yaw));
+    return DistanceTo(first_end_, X_MB) + kTurnCost * turn;
+  }
+
+  static std::uint64_t KeyOf(const PieceNode& node) {
+    const auto cell = [](double x) {
+      return static_cast<std::uint64_t>(static_cast<std::int64_t>(std::floor(x / kPieceSquare)));
+    };
+    const int heading = (node.heading % kHeadings + kHeadings) % kHeadings;
+    return ((cell(node.X_MB.x) & 0xfffffff) << 36) | ((cell(node.X_MB.y) & 0xfffffff) << 8) |
+           static_cast<std::uint64_t>(heading);
+  }
+
+  void Add(const PieceNode& node) {
+    open_.push({node.cost + Estimate(node.X_MB), static_cast<int>(nodes_.size())});
+    nodes_.push_back(node);
+  }
+
+  /// The widest one from `first` on that a motion keeps; how many there are: something is in its
+  /// way.
+  std::size_t MarginOf(const Pose2& X_MB, const geometry::Twist2& motion, std::size_t first) const {
+    while (first < sweeps_->size() && !(*sweeps_)[first].IsFree(costmap_, X_MB, motion, 1.0))
+      ++first;
+    return first;
+  }
+
+  void Expand(int parent, Move move) {
+    const PieceNode from = nodes_[parent];
+    const geometry::Twist2 motion = VelocityOf(move);
+    PieceNode next = from;
+    next.X_MB = PoseAfter(from.X_MB, motion, 1.0);
+    if (!IsDrive(move)) {
+      next.heading += move == Move::kTurnLeft ? 1 : -1;
+      next.X_MB.yaw = geometry::WrapToPi(X_MStart_.yaw + next.heading * kTurnStep);
+    }
+    if ((next.X_MB.position() - X_MStart_.position()).norm() > kPieceReach) return;
+    if (closed_.count(KeyOf(next)) > 0) return;
+    next.margin = MarginOf(from.X_MB, motion, margin_);
+    if (next.margin > std::max(margin_, from.margin) || next.margin == sweeps_->size()) return;
+    next.cost += IsDrive(move) ? kDriveStep : kTurnCost * kTurnStep;
+    if (move != from.move) next.cost += kPieceCost;
+    next.move = move;
+    next.parent = parent;
+    Add(next);
+  }
+
+  /// Turns and the drive after them are one piece.
+  std::vector<Piece> PiecesTo(int end) const {
+    std::vector<int> nodes;
+    for (int at = end; at > 0; at = nodes_[at].parent) nodes.push_back(at);
+    std::reverse(nodes.begin(), nodes.end());
+    std::vector<Piece> pieces;
+    Move last = Move::kNone;
+    for (const int i : nodes) {
+      const PieceNode& node = nodes_[i];
+      const bool goes_on = node.move == last || (IsDrive(node.move) && !IsDrive(last));
+      if (pieces.empty() || !goes_on) pieces.emplace_back();
+      if (!IsDrive(node.move)) pieces.back().sign = node.move == Move::kTurnLeft ? 1 : -1;
+      pieces.back().yaw = node.X_MB.yaw;
+      pieces.back().p_MTo = node.X_MB.position();
+      last = node.move;
+    }
+    return pieces;
+  }
+
+  const Costmap& costmap_;
+  Pose2 X_MStart_;
+  std::vector<SweptFootprint>* sweeps_;
+  std::vector<WayPoint> way_;
+  std::size_t first_end_{0};
+  std::size_t margin_{0};
+  std::vector<PieceNode> nodes_;
+  std::priority_queue<OpenPiece> open_;
+  std::unordered_set<std::uint64_t> closed_;
+};
+
+}  // namespace
+
+std::vector<Piece> FindPieces(const Costmap& costmap, const Pose2& X_MB,
+                              const std::vector<Vector2d>& way,
+                              std::vector<SweptFootprint>* sweeps) {
+  PieceSearch search(costmap, X_MB, way, sweeps);
+  std::vector<Piece> pieces;
+  for (std::size_t i = 0; i < sweeps->size() && pieces.empty(); ++i) pieces = search.Find(i);
+  return pieces;
+}
+
+WayManoeuvre::WayManoeuvre(const DwaParams& params)
+    : params_(params), watch_(params, kStuckPatience), drive_(params) {}
+
+void WayManoeuvre::SetMotionSet(const robot::MotionSet& limits) {
+  watch_.SetMotionSet(limits);
+  drive_.SetMotionSet(limits);
+}
+
+void WayManoeuvre::SetWay(bool is_same_goal) {
+  watch_.Reset();
+  if (is_same_goal) return;
+  drive_.End();
+  is_stuck_ = false;
+  num_tries_ = 0;
+}
+
+WayManoeuvre::Step WayManoeuvre::Update(const Costmap& costmap, const Pose2& X_MB,
+                                        const geometry::Twist2& V_B,
+                                        const std::vector<Vector2d>& way, std::size_t nearest,
+                                        std::vector<SweptFootprint>* sweeps) {
+  since_search_ += params_.control_period;
+  if (!drive_.is_active()) {
+    const double left = params_.sim_granularity * static_cast<double>(way.size() - 1 - nearest);
+    const auto ahead = static_cast<std::size_t>(kFacedAhead / params_.sim_granularity);
+    const Vector2d& p_MAhead = way[std::min(nearest + ahead, way.size() - 1)];
+    is_stuck_ = watch_.Stalls(left + LeftTo(X_MB, p_MAhead)) || is_stuck_;
+    const bool is_near = (way.back() - X_MB.position()).norm() <= NearGoal(params_);
+    if (is_near || num_tries_ == kMostManoeuvres ||
+        (num_tries_ > 0 && since_search_ < kStuckPatience))
+      is_stuck_ = false;
+    if (!is_stuck_) return {Next::kNothing, {}};
+    if (!IsStopped(V_B, params_)) return {Next::kBrake, {}};
+    is_stuck_ = false;
+    ++num_tries_;
+    since_search_ = 0.0;
+    auto pieces = FindPieces(
+        costmap, X_MB, {way.begin() + static_cast<std::ptrdiff_t>(nearest), way.end()}, sweeps);
+    if (pieces.empty()) return {Next::kNothing, {}};
+    drive_.BeginAlong(std::move(pieces));
+  }
+  const GoalApproach::Step step = drive_.Update(costmap, X_MB, V_B, &sweeps->back());
+  if (step.state == GoalApproach::State::kDriving) return {Next::kDrive, step.velocity};
+  watch_.Reset();
+  return {Next::kNothing, {}};
+}
+
+}  // namespace hires::navigation
