@@ -1,17 +1,36 @@
 #include "hires/base/short_text.h"
 
+#include <fmt/format.h>
+
 namespace hires::base {
 namespace {
 
 bool IsWithinCharacter(char c) { return (static_cast<unsigned char>(c) & 0xC0) == 0x80; }
 
+/// A NUL would end a message, and others change what a terminal shows.
+bool IsControl(unsigned char c) { return (c < 0x20 && c != '\n' && c != '\t') || c == 0x7F; }
+
+std::string WithoutControls(const std::string& text) {
+  std::string shown;
+  for (const char c : text) {
+    const auto byte = static_cast<unsigned char>(c);
+    if (IsControl(byte)) {
+      shown += fmt::format("\\x{:02x}", byte);
+    } else {
+      shown += c;
+    }
+  }
+  return shown;
+}
+
 }  // namespace
 
 std::string Shortened(const std::string& text, std::size_t at_most) {
-  if (text.size() <= at_most) return text;
+  const std::string shown = WithoutControls(text.substr(0, at_most + 1));
+  if (shown.size() <= at_most) return shown;
   std::size_t end = at_most;
-  while (end > 0 && IsWithinCharacter(text[end])) --end;
-  return text.substr(0, end) + " ...";
+  while (end > 0 && IsWithinCharacter(shown[end])) --end;
+  return shown.substr(0, end) + " ...";
 }
 
 }  // namespace hires::base

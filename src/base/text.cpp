@@ -126,7 +126,9 @@ std::string ReadTextFile(const std::string& path, std::size_t max_bytes) {
   std::ostringstream text;
   text << stream.rdbuf();
   if (!stream) throw ConfigError(fmt::format("{}: cannot be read; check its permissions", path));
-  return text.str();
+  constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";  // of editors that write UTF-8 so
+  const std::string read = text.str();
+  return read.rfind(kByteOrderMark, 0) == 0 ? read.substr(kByteOrderMark.size()) : read;
 }
 
 void ReplaceTextFile(const std::string& path, const std::string& text) {

@@ -88,6 +88,23 @@ TEST_F(PcdFileTest, RealPackedCloudsAreRead) {
   }
 }
 
+TEST_F(PcdFileTest, AByteOrderMarkBeforeTheHeaderIsPassedOver) {
+  const PointCloud cloud =
+      ReadPcd(Write("\xEF\xBB\xBF" + std::string(kHeader) + "DATA ascii\n1 2 3 7\n4 5 6 0\n"));
+  EXPECT_EQ(cloud.points.at(1), Eigen::Vector3f(4.0F, 5.0F, 6.0F));
+}
+
+TEST_F(PcdFileTest, AMessageIsWholeWhateverTheFileHolds) {
+  EXPECT_EQ(ErrorOf(std::string("\x01\x02\x00\x03 and more", 13)),
+            path_ + ": is no text, wanted a header of the Point Cloud Data format (.pcd)");
+  EXPECT_EQ(ErrorOf("VERSION 0.7\nFIE" + std::string(1, '\0') + "LDS x y z\n"),
+            path_ +
+                ": line 2: 'FIE\\x00LDS' begins no line of a header of the Point Cloud Data format "
+                "(.pcd)");
+  EXPECT_EQ(ErrorOf("VERSION 0.7\nWIDTH 1" + std::string(1, '\0') + "0\n"),
+            path_ + ": line 2: '1\\x000' is no whole number from 0 to 50000000");
+}
+
 struct Damage {
   std::string text, said;
 };

@@ -14,6 +14,17 @@ TEST(TakeOnlyAheadTest, WhatNoCameraMeasuresCountsAsNotMeasured) {
   EXPECT_EQ(cloud.points[1], Eigen::Vector3f(0.1F, 0.2F, 1.0F));
 }
 
+TEST(TakeOnlyAheadTest, HugeNumbersOfEitherSignSayThatNothingWasMeasured) {
+  for (const float huge : {1e30F, -1e30F, std::numeric_limits<float>::max(), 2e4F, -2e4F}) {
+    PointCloud cloud{10, 1, std::vector<Eigen::Vector3f>(10, {0.5F, 0.0F, 1.0F})};
+    for (int i = 0; i < 7; ++i) cloud.points[i].setConstant(huge);
+    cloud.points[7].x() = huge;
+    EXPECT_EQ(TakeOnlyAhead(&cloud), "") << huge;
+    for (int i = 0; i < 8; ++i) EXPECT_FALSE(IsMeasured(cloud.points[i])) << huge << ", " << i;
+    EXPECT_TRUE(IsMeasured(cloud.points[9]));
+  }
+}
+
 TEST(TakeOnlyAheadTest, FewPointsBehindAreDroppedAndManySayThatTheFrameIsWrong) {
   PointCloud cloud{10, 1, std::vector<Eigen::Vector3f>(10, {0.5F, 0.0F, 1.0F})};
   cloud.points[3] = {0.5F, 0.0F, -1.0F};

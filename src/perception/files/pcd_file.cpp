@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <lzf.h>
 
+#include <algorithm>
 #include <array>
 #include <charconv>
 #include <cstdint>
@@ -37,6 +38,11 @@ struct Header {
   std::uint64_t width{0}, height{0}, points{0};
   std::string data{};
 };
+
+bool IsText(const std::string& line) {
+  return std::none_of(line.begin(), line.end(),
+                      [](unsigned char c) { return c < 0x20 && c != '\t' && c != '\r'; });
+}
 
 class PcdReader {
  public:
@@ -97,6 +103,8 @@ void PcdReader::ReadHeader() {
   while (header_.data.empty()) {
     if (++line_ > kMostHeaderLines || !std::getline(in_, text))
       Fail("has no line DATA; wanted a header of the Point Cloud Data format (.pcd)");
+    if (line_ == 1 && !IsText(text))
+      Fail("is no text, wanted a header of the Point Cloud Data format (.pcd)");
     std::istringstream split(text);
     std::vector<std::string> words;
     for (std::string word; split >> word && word[0] != '#';) words.push_back(word);
@@ -119,8 +127,8 @@ void PcdReader::TakeLine(const std::vector<std::string>& words) {
   } else if (key == "DATA") {
     header_.data = words.size() == 2 ? words[1] : "";
     if (header_.data != "ascii" && header_.data != "binary" && header_.data != "binary_compressed")
-      FailLine(
-          fmt::format("DATA is '{}'; wanted ascii, binary or binary_compressed", header_.data));
+      FailLine(fmt::format("DATA is '{}'; wanted ascii, binary or binary_compressed",
+                           base::Shortened(header_.data, 40)));
   } else if (key != "VERSION" && key != "VIEWPOINT") {
     FailLine(fmt::format("'{}' begins no line of a header of the Point Cloud Data format (.pcd)",
                          base::Shortened(key, 40)));
@@ -150,7 +158,8 @@ std::uint64_t PcdReader::WholeNumber(const std::string& word, std::uint64_t leas
   const char* end = word.data() + word.size();
   const auto [rest, error] = std::from_chars(word.data(), end, number);
   if (error != std::errc() || rest != end || number < least || number > most)
-    FailLine(fmt::format("'{}' is no whole number from {} to {}", word, least, most));
+    FailLine(fmt::format("'{}' is no whole number from {} to {}", base::Shortened(word, 40), least,
+                         most));
   return number;
 }
 
@@ -188,7 +197,7 @@ std::array<const Field*, 3> PcdReader::Xyz() const {
       if (field.name == kNames[axis]) found[axis] = &field;
     if (found[axis] == nullptr) {
       Fail(fmt::format("has no field {}; it has {}", kNames[axis],
-                       names.empty() ? "none" : base::Join(names, ", ")));
+                       names.empty() ? "none" : base::Shortened(base::Join(names, ", "))));
     }
   }
   return found;
@@ -213,7 +222,8 @@ void PcdReader::ReadText(PointCloud* cloud) {
       const std::string& word = words[xyz[axis]->offset];
       char* end = nullptr;
       cloud->points[i][axis] = std::strtof(word.c_str(), &end);
-      if (*end != '\0') FailLine(fmt::format("{} is '{}', no number", xyz[axis]->name, word));
+      if (*end != '\0')
+        FailLine(fmt::format("{} is '{}', no number", xyz[axis]->name, base::Shortened(word, 40)));
     }
   }
 }
