@@ -4,6 +4,9 @@
 
 #include <filesystem>
 #include <limits>
+#include <map>
+#include <string>
+#include <utility>
 
 #include "hires/base/error.h"
 #include "hires/localisation/filtered_log.h"
@@ -204,6 +207,95 @@ TEST(MapperTest, OdometryMayBeResetBetweenScans) {
   }
 }
 
+bool IsTurnInPlace(const RobotLog& log, std::size_t i) {
+  const auto& odometry = log.odometry;
+  return i > 0 && odometry[i].reading.X_OB.position() == odometry[i - 1].reading.X_OB.position();
+}
+
+/// Readings of each turn in place come and are stamped within 10 ms at its end.
+void SendTurnsInBursts(SimulatedDrive* drive) {
+  std::map<double, double> stamp_of;
+  auto& odometry = drive->log.odometry;
+  for (std::size_t begin = 0; begin < odometry.size();) {
+    std::size_t end = begin + 1;
+    while (end < odometry.size() && IsTurnInPlace(drive->log, end)) ++end;
+    const double last = odometry[end - 1].time;
+    for (std::size_t i = begin; i < end; ++i) {
+      const double share = static_cast<double>(i - begin + 1) / static_cast<double>(end - begin);
+      stamp_of[odometry[i].time] = end - begin > 1 && i > begin ? last - 0.01 * (1.0 - share)
+                                                                : odometry[i].time;
+    }
+    begin = end;
+  }
+  for (auto& reading : odometry) reading.time = stamp_of.at(reading.time);
+  for (RobotLog::Scan& scan : drive->log.scans) scan.time = stamp_of.at(scan.time);
+  for (localisation::TimedPose& pose : drive->truth) pose.time = stamp_of.at(pose.time);
+}
+
+TEST(MapperTest, BurstsOfLateReadingsAreNoReset) {
+  SimulatedDriveParams params;
+  params.turn_rate = 3.0;  // 0.15 rad from reading to reading
+  for (int seed = 1; seed <= 2; ++seed) {
+    SimulatedDrive drive = TwoRoomsDrive(params, seed);
+    const MapResult before = MakeMap(drive.log);
+    SendTurnsInBursts(&drive);
+    for (const bool scans_tell : {false, true}) {
+      if (scans_tell) LetScansTellOdometry(&drive.log);
+      const MapResult result = MakeMap(drive.log);
+      EXPECT_EQ(result.odometry_jumps, 0);
+      EXPECT_LE(TrajectoryRms(result.trajectory, drive.truth),
+                0.02 + TrajectoryRms(before.trajectory, drive.truth));
+    }
+  }
+}
+
+/// Every second turn in place is told by a share only.
+void MissTurns(double told, RobotLog* log) {
+  const RobotLog whole = *log;
+  geometry::Pose2 X_OB = whole.odometry.front().reading.X_OB;
+  int num_turns = 0;
+  for (std::size_t i = 1; i < whole.odometry.size(); ++i) {
+    geometry::Pose2 step =
+        whole.odometry[i - 1].reading.X_OB.Inverse() * whole.odometry[i].reading.X_OB;
+    const bool is_turn = IsTurnInPlace(whole, i);
+    if (is_turn && !IsTurnInPlace(whole, i - 1)) ++num_turns;
+    if (is_turn && num_turns % 2 == 0) step.yaw = told * geometry::WrapToPi(step.yaw);
+    X_OB = X_OB * step;
+    log->odometry[i].reading.X_OB = X_OB;
+  }
+}
+
+TEST(MapperTest, TurnsThatTheOdometryMissesDoNotAddUp) {
+  SimulatedDriveParams params;
+  params.odometry_period = 0.04;
+  for (int seed = 1; seed <= hires::test_support::Rounds(8); ++seed) {
+    for (const double told : {0.0, 0.5}) {
+      SCOPED_TRACE(testing::Message() << seed << " " << told);
+      SimulatedDrive drive = TwoRoomsDrive(params, seed);
+      MissTurns(told, &drive.log);
+      EXPECT_LE(TrajectoryRms(MakeMap(drive.log).trajectory, drive.truth), 0.1);
+    }
+  }
+}
+
+/// Normals have noise, which tells nothing of how far along the hall the robot is.
+TEST(MapperTest, AHallPullsNobodyAlongIt) {
+  world::OccupancyGrid hall{0.05, 840, 80, {0.0, 0.0}, {}};
+  hall.cells.assign(std::size_t{840} * 80, world::Cell::kOccupied);
+  for (int row = 20; row < 60; ++row)
+    for (int column = 20; column < 820; ++column) hall.cells[row * 840 + column] = world::Cell::kFree;
+  SimulatedDriveParams params = test_support::ExactOdometry();
+  params.scale_error = 0.002;
+  params.beams = 181;
+  for (int round = 0; round < hires::test_support::Rounds(12); ++round) {
+    params.range_noise = 0.02 * (round % 3);
+    SCOPED_TRACE(testing::Message() << round << " " << params.range_noise);
+    const SimulatedDrive drive = DriveThrough(hall, {{2.0, 2.0}, {40.0, 2.0}, {2.0, 2.0}}, params,
+                                              base::Rng(9).Fork(round));
+    EXPECT_LE(TrajectoryRms(MakeMap(drive.log).trajectory, drive.truth), 0.25);
+  }
+}
+
 TEST(MapperTest, LimitsOfSpeedChangeNoDriveWithoutAReset) {
   MapperParams none;
   none.max_linear_speed = none.max_angular_speed = 100.0;
@@ -303,6 +395,23 @@ TEST(MapperTest, LogsWithoutMeasurementsAreRefused) {
   for (RobotLog::Scan& scan : drive.log.scans)
     std::fill(scan.reading.ranges.begin(), scan.reading.ranges.end(), 30.0F);
   EXPECT_THROW(MakeMap(drive.log), base::ConfigError);
+}
+
+TEST(MapperTest, RangesInAnotherUnitAreAskedAbout) {
+  for (const auto& [factor, unit] :
+       {std::pair<float, const char*>{100.0F, "centimetres"}, {1000.0F, "millimetres"}}) {
+    SimulatedDrive drive = TwoRoomsDrive();
+    for (RobotLog::Scan& scan : drive.log.scans) {
+      for (float& range : scan.reading.ranges) range *= factor;
+      scan.reading.range_max *= factor;
+    }
+    try {
+      MakeMap(drive.log);
+      ADD_FAILURE() << unit;
+    } catch (const base::ConfigError& error) {
+      EXPECT_NE(std::string(error.what()).find(unit), std::string::npos) << error.what();
+    }
+  }
 }
 
 TEST(MapperTest, TimesThatGoBackAreTheCallersError) {
