@@ -4,10 +4,12 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <memory>
 
 #include "hires/base/rng.h"
 #include "hires/world/occupancy_grid.h"
+#include "skills/point_robot.h"
 #include "support/rounds.h"
 #include "support/scenes.h"
 
@@ -21,6 +23,7 @@ using hires::test_support::Room;
 using hires::test_support::Rounds;
 using hires::test_support::TrayRobot;
 using ::testing::AllOf;
+using ::testing::AnyOf;
 using ::testing::HasSubstr;
 
 constexpr double kCell = 0.05;  // [m]
@@ -79,6 +82,20 @@ world::World WithDoor(double width, double thickness, double yaw) {
   return world;
 }
 
+/// [m] Across headings within 0.52 rad of its way's.
+double LeastWidth(const geometry::Polygon& footprint) {
+  double least = 1e9;
+  for (double yaw = -0.49; yaw < 0.5; yaw += 0.035) {
+    double lowest = 1e9, highest = -1e9;
+    for (const Eigen::Vector2d& p : geometry::Transformed({0.0, 0.0, yaw}, footprint)) {
+      lowest = std::min(lowest, p.y());
+      highest = std::max(highest, p.y());
+    }
+    least = std::min(least, highest - lowest);
+  }
+  return least;
+}
+
 TEST(WayBlockedTest, AFootprintWiderThanTheOnlyDoorIsNoPathAtOnce) {
   base::Rng rng(11);
   for (int i = 0; i < Rounds(48); ++i) {
@@ -91,9 +108,11 @@ TEST(WayBlockedTest, AFootprintWiderThanTheOnlyDoorIsNoPathAtOnce) {
     const Status status = FirstWord(context, X_MT, X_MT * Pose2{6.0, 0.0, 0.0});
     ASSERT_EQ(status.failure.code, FailureCode::kNoPath)
         << "door " << door << " robot " << wide << " yaw " << yaw;
-    EXPECT_THAT(status.failure.detail,
-                AllOf(HasSubstr("the way ends at"), HasSubstr(fmt::format("{:.2f} m wide", wide)),
-                      HasSubstr("'arm' reaches farthest"), HasSubstr("_wall'")));
+    EXPECT_THAT(
+        status.failure.detail,
+        AllOf(HasSubstr("the way ends at"),
+              HasSubstr(fmt::format("the base is {:.2f} m wide", LeastWidth(context->footprint))),
+              HasSubstr("'arm' reaches farthest"), HasSubstr("_wall'")));
   }
 }
 
@@ -131,6 +150,46 @@ TEST(WayBlockedTest, WhatStandsAtAGoalIsNamedWithItsLine) {
     EXPECT_EQ(start.failure.code, FailureCode::kStartBlocked);
     EXPECT_THAT(start.failure.detail, AllOf(HasSubstr("the start at x"), HasSubstr("'crate'")));
   }
+}
+
+/// A box whose root is not in its middle.
+robot::Robot WithRootAskew(double length, double width, double askew) {
+  robot::Robot robot = TrayRobot();
+  const double right = -0.5 * width + askew, left = 0.5 * width + askew;
+  robot.profile.footprint = {
+      {-0.5 * length, right}, {0.5 * length, right}, {0.5 * length, left}, {-0.5 * length, left}};
+  return robot;
+}
+
+// What is wider than a door by a few mm is said to be, with both widths; what has two cells to
+// spare at each side finds its way.
+TEST(WayBlockedTest, WhatIsSaidOfADoorAgreesWithWhetherTheFootprintFits) {
+  base::Rng rng(15);
+  int num_wider = 0;
+  for (int i = 0; i < Rounds(64); ++i) {
+    const double width = rng.Uniform(0.6, 1.0), askew = rng.Uniform(-0.2, 0.2);
+    const double wide = width + 2.0 * TrayRobot().profile.footprint_padding;
+    const bool is_wider = rng.Bernoulli(0.5);
+    const double door = is_wider ? wide - rng.Uniform(0.003, 0.1) : wide + rng.Uniform(0.2, 0.4);
+    const double yaw = rng.Bernoulli(0.5) ? 0.0 : rng.Uniform(-3.0, 3.0);
+    const auto context = std::make_shared<const DrivingContext>(
+        MakeDrivingContext(WithDoor(door, rng.Uniform(0.1, 0.4), yaw),
+                           WithRootAskew(rng.Uniform(0.5, 0.8), width, askew), {}));
+    const Pose2 X_MT{0.0, 0.0, yaw};
+    const Status status = FirstWord(context, X_MT, X_MT * Pose2{6.0, 0.0, 0.0});
+    SCOPED_TRACE(fmt::format("door {} wide {} askew {} yaw {}", door, wide, askew, yaw));
+    if (!is_wider) {
+      EXPECT_EQ(ToString(status.failure), "");
+      continue;
+    }
+    ++num_wider;
+    ASSERT_EQ(status.failure.code, FailureCode::kNoPath);
+    EXPECT_THAT(status.failure.detail,
+                AllOf(HasSubstr(fmt::format("the base is {:.2f} m wide", wide)),
+                      AnyOf(HasSubstr(fmt::format("it is {:.2f} m wide there", door)),
+                            HasSubstr(fmt::format("it is {:.2f} m wide there", door + 0.005)))));
+  }
+  EXPECT_GT(num_wider, 3);
 }
 
 /// Two slabs along the way from (0, 0) to (6, 0), with a gap from x 3 on and a bridge over it, all
@@ -218,6 +277,28 @@ TEST(WayBlockedTest, UnmappedGroundAndWallsOfAMapAreToldApart) {
     EXPECT_EQ(start.failure.code, FailureCode::kStartBlocked);
     EXPECT_THAT(start.failure.detail, HasSubstr("is unmapped (unknown)"));
   }
+}
+
+// Of dots that nobody mapped, so close that a circle passes between them and the base does not, a
+// drive says what is in the way, however it ends.
+TEST(WayBlockedTest, UnmappedDotsAreSaidToBeInTheWay) {
+  base::Rng rng(16);
+  int num_stuck = 0;
+  for (int i = 0; i < Rounds(24); ++i) {
+    world::OccupancyGrid map = Plain();
+    for (int row = 0; row < map.height; row += 11 + static_cast<int>(rng.Uniform(0.0, 3.0)))
+      for (int k = 0; k < 2; ++k) map.cells[row * map.width + 60 + 4 * k] = world::Cell::kUnknown;
+    const auto context = std::make_shared<const DrivingContext>(
+        MakeDrivingContext(map, WithArm(0.3), MoveBaseParams{}));
+    MoveBase skill(context, {5.0, 2.0, 0.0}, kSlow);
+    test_support::PointRobot robot;
+    robot.X_MB = {1.0, 2.0, 0.0};
+    const auto run = test_support::RunSkill(&skill, robot, {}, 120.0);
+    if (run.status.progress == Progress::kSucceeded) continue;
+    ++num_stuck;
+    EXPECT_THAT(run.status.failure.detail, HasSubstr("unmapped (unknown)")) << i;
+  }
+  EXPECT_GT(num_stuck, 0);
 }
 
 TEST(WayBlockedTest, TheWayRoundATooNarrowDoorIsTaken) {

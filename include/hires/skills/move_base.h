@@ -126,6 +126,7 @@ class MoveBase : public Skill {
   navigation::Costmap MapWithMarks(const robot::Observation& observation) const;
   void Look(const robot::Observation& observation);
   Status Recover(const robot::Observation& observation);
+  Status Stuck(base::FailureCode code, const robot::Observation& observation) const;
 
   std::shared_ptr<const DrivingContext> context_;
   geometry::Pose2 X_MGoal_;

@@ -419,9 +419,13 @@ bool MoveBase::NoteMotion(const robot::Observation& observation) {
   return observation.time - last_moved_ <= context_->params.oscillation_timeout;
 }
 
+Status MoveBase::Stuck(base::FailureCode code, const robot::Observation& observation) const {
+  return Failed({code, {}, WhyStuck(*now_, footprint_, observation.X_MB)});
+}
+
 Status MoveBase::Recover(const robot::Observation& observation) {
   if (observation.time - last_valid_ > context_->params.controller_patience) {
-    return Failed(base::FailureCode::kNoValidTrajectory);
+    return Stuck(base::FailureCode::kNoValidTrajectory, observation);
   }
   if (observation.time - last_plan_ >= context_->params.replanning_period) {
     // A car with nothing in its way came to rest out of tolerance: the next way may end so, too.
@@ -535,7 +539,7 @@ Status MoveBase::Update(const robot::Observation& observation, robot::Command* c
   }
   last_valid_ = observation.time;
   if (!NoteMotion(observation)) {
-    if (++oscillations_ > 1) return Failed(base::FailureCode::kOscillating);
+    if (++oscillations_ > 1) return Stuck(base::FailureCode::kOscillating, observation);
     last_moved_ = observation.time;
     if (const auto failed = Plan(observation)) return *failed;
   }

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -23,6 +24,10 @@ constexpr double kHeadingStep = 0.035;     // [rad]
 constexpr double kStraightWay = 0.3;       // [m] before and behind the middle of a passage
 constexpr double kPlaceSteps = 4.0;        // places tried per cell
 constexpr double kSlack = 0.03;            // [m] that lies between what is tried
+constexpr double kExact = 0.001;           // [m]
+constexpr double kTight = 2.0;             // cells of spare room; with more a base winds through
+constexpr double kFineSteps = 10.0;        // places tried per cell of what is tight
+constexpr double kFineHeading = 0.0175;    // [rad]
 constexpr double kFarthestSide = 5.0;      // [m] to either side; what is wider is not narrow
 constexpr double kFarthestObstacle = 2.0;  // [m] from a place that it blocks
 
@@ -31,6 +36,19 @@ double WidthOf(const geometry::Polygon& footprint) {
       std::minmax_element(footprint.begin(), footprint.end(),
                           [](const auto& a, const auto& b) { return a.y() < b.y(); });
   return highest->y() - lowest->y();
+}
+
+/// [m] Across a heading.
+double WidthAcross(const geometry::Polygon& footprint, double heading) {
+  return WidthOf(geometry::Transformed({0.0, 0.0, -heading}, footprint));
+}
+
+/// [m] The least room that a base needs which passes headed along its way, or nearly so.
+double NarrowestWidth(const geometry::Polygon& footprint) {
+  double narrowest = WidthOf(footprint);
+  for (double off = kHeadingStep; off <= kDrivenHeading; off += kHeadingStep)
+    narrowest = std::min({narrowest, WidthAcross(footprint, off), WidthAcross(footprint, -off)});
+  return narrowest;
 }
 
 /// Whether a cell is no room for anything of a base; or for something of it.
@@ -53,6 +71,12 @@ double FreeTowards(const Costmap& costmap, const Eigen::Vector2d& p_M,
   const double step = costmap.resolution() / kPlaceSteps;
   double free = 0.0;
   while (free < kFarthestSide && !IsObstacle(costmap, p_M + (free + step) * along)) free += step;
+  if (free >= kFarthestSide) return free;
+  double taken = free + step;
+  while (taken - free > kExact) {
+    const double middle = 0.5 * (free + taken);
+    (IsObstacle(costmap, p_M + middle * along) ? taken : free) = middle;
+  }
   return free;
 }
 
@@ -135,9 +159,16 @@ bool DrivesThrough(const Costmap& costmap, const navigation::Footprint& footprin
   return true;
 }
 
+/// How densely places and headings are tried.
+struct Trials {
+  double place_steps;   // per cell
+  double heading_step;  // [rad]
+};
+constexpr Trials kCoarse{kPlaceSteps, kHeadingStep}, kFine{kFineSteps, kFineHeading};
+
 bool FitsAt(const Costmap& costmap, const navigation::Footprint& footprint,
-            const Eigen::Vector2d& p_M, double yaw) {
-  for (double off = 0.0; off <= kDrivenHeading; off += kHeadingStep) {
+            const Eigen::Vector2d& p_M, double yaw, const Trials& trials) {
+  for (double off = 0.0; off <= kDrivenHeading; off += trials.heading_step) {
     for (const double heading : {yaw + off, yaw - off}) {
       if (DrivesThrough(costmap, footprint, {p_M.x(), p_M.y(), heading})) return true;
     }
@@ -147,11 +178,11 @@ bool FitsAt(const Costmap& costmap, const navigation::Footprint& footprint,
 
 /// Places across the way, from its middle outwards.
 bool FitsAcross(const Costmap& costmap, const navigation::Footprint& footprint,
-                const Eigen::Vector2d& middle, const Cut& cut) {
-  const double step = costmap.resolution() / kPlaceSteps;
+                const Eigen::Vector2d& middle, const Cut& cut, const Trials& trials) {
+  const double step = costmap.resolution() / trials.place_steps;
   for (double y = 0.0; y <= 0.5 * cut.width(); y += step) {
-    if (FitsAt(costmap, footprint, middle + y * cut.left, cut.yaw()) ||
-        FitsAt(costmap, footprint, middle - y * cut.left, cut.yaw()))
+    if (FitsAt(costmap, footprint, middle + y * cut.left, cut.yaw(), trials) ||
+        FitsAt(costmap, footprint, middle - y * cut.left, cut.yaw(), trials))
       return true;
   }
   return false;
@@ -251,7 +282,7 @@ class Explainer {
     const auto part = ShapesWithin(*context_.robot,
                                    {heights.first - kHeightSlack, heights.second + kHeightSlack});
     const bool is_wide =
-        part && geometry::CircumscribedRadius(*part) >= 0.5 * NeededWidth() && !IsInLayer(cell_M);
+        part && geometry::CircumscribedRadius(*part) >= LeastDistance() && !IsInLayer(cell_M);
     if (is_wide) return "";
     return fmt::format("; '{}' is {:.2f} m to {:.2f} m up, where the robot is {}{}", there->name,
                        heights.first, heights.second,
@@ -271,7 +302,26 @@ class Explainer {
     return ahead + behind;
   }
 
-  double NeededWidth() const { return 2.0 * geometry::InscribedRadius(context_.footprint); }
+  /// [m] What is nearer than this is in the way of the base, however it is headed.
+  double LeastDistance() const { return geometry::InscribedRadius(context_.footprint); }
+
+  double NeededWidth() const { return NarrowestWidth(context_.footprint); }
+
+  /// "it is 0.85 m wide there", by the things themselves where they are known: cells take up to one
+  /// more at each side.
+  /// @param left  across the way. @param by_cells  [m]
+  std::string WidthText(const Eigen::Vector2d& p_M, const Eigen::Vector2d& left, double by_cells,
+                        double needed) const {
+    const auto by_things = WidthBetweenThings(p_M, left);
+    const bool is_it =
+        by_things && *by_things >= by_cells && *by_things <= by_cells + 3.0 * costmap_.resolution();
+    if (!is_it) return fmt::format("it is {:.2f} m wide there", by_cells);
+    std::string text = fmt::format("it is {:.2f} m wide there", *by_things);
+    if (*by_things >= needed)
+      text +=
+          fmt::format(" ({:.2f} m in the map's cells of {:g} m)", by_cells, costmap_.resolution());
+    return text;
+  }
 
   /// "the base is 0.53 m wide with its padding ('arm' reaches farthest)".
   std::string BaseText(double width) const {
@@ -283,6 +333,40 @@ class Explainer {
   }
 
  private:
+  /// [m] Through a place: to the nearest thing on either side, in that direction or nearly so. The
+  /// place may lie a little before the passage.
+  std::optional<double> WidthBetweenThings(const Eigen::Vector2d& p_M,
+                                           const Eigen::Vector2d& left) const {
+    constexpr double kTurned = 0.35, kTurnedStep = 0.0175;  // [rad]
+    if (!context_.obstacles) return std::nullopt;
+    double to_left = kFarthestSide, to_right = kFarthestSide;
+    for (double turned = -kTurned; turned <= kTurned; turned += kTurnedStep) {
+      const Eigen::Vector2d along = Eigen::Rotation2Dd(turned) * left;
+      to_left = std::min(to_left, FreeOfThings(p_M, along));
+      to_right = std::min(to_right, FreeOfThings(p_M, -along));
+    }
+    const double width = to_left + to_right;
+    return width < kFarthestSide ? std::make_optional(width) : std::nullopt;
+  }
+
+  /// [m] from a point in a direction to the nearest thing; kFarthestSide: nothing is there.
+  double FreeOfThings(const Eigen::Vector2d& p_M, const Eigen::Vector2d& along) const {
+    double free = kFarthestSide;
+    for (const world::NamedOutline& thing : *context_.obstacles) {
+      const geometry::Polygon& corners = thing.outline_M;
+      for (std::size_t i = 0; i < corners.size(); ++i) {
+        const Eigen::Vector2d from = corners[i] - p_M;
+        const Eigen::Vector2d edge = corners[(i + 1) % corners.size()] - corners[i];
+        const double across = along.x() * edge.y() - along.y() * edge.x();
+        if (std::abs(across) < 1e-12) continue;
+        const double way = (from.x() * edge.y() - from.y() * edge.x()) / across;
+        const double on_edge = (from.x() * along.y() - from.y() * along.x()) / across;
+        if (way >= 0.0 && on_edge >= 0.0 && on_edge <= 1.0) free = std::min(free, way);
+      }
+    }
+    return free;
+  }
+
   geometry::Polygon CellAt(const Eigen::Vector2d& cell_M) const {
     const double half = 0.5 * costmap_.resolution();
     return {cell_M + Eigen::Vector2d(-half, -half), cell_M + Eigen::Vector2d(half, -half),
@@ -392,18 +476,22 @@ std::optional<NarrowPlace> FindTooNarrow(const Costmap& costmap,
                                          const navigation::Footprint& footprint,
                                          const std::vector<Pose2>& path) {
   const double reach = geometry::CircumscribedRadius(footprint.outline);
+  const double needed = NarrowestWidth(footprint.outline);
   const navigation::Footprint shrunk = Shrunk(footprint);
   for (std::size_t i = 0; i < path.size(); ++i) {
     const Pose2& pose = path[i];
     const bool is_at_end = (pose.position() - path.front().position()).norm() <= reach ||
                            (pose.position() - path.back().position()).norm() <= reach;
-    if (is_at_end || costmap.FootprintCost(shrunk, pose) < navigation::kLethalCost) continue;
-    const Cut cut = NarrowestCut(costmap, shrunk, pose);
+    if (is_at_end || costmap.FootprintCost(footprint, pose) < navigation::kLethalCost) continue;
+    const bool is_clear = costmap.FootprintCost(shrunk, pose) < navigation::kLethalCost;
+    const Cut cut = NarrowestCut(costmap, is_clear ? footprint : shrunk, pose);
     if (cut.width() >= 2.0 * reach || !GoesStraight(path, i, cut.yaw())) continue;
+    const bool is_tight = cut.width() < needed + kTight * costmap.resolution();
     const Eigen::Vector2d middle = pose.position() + 0.5 * (cut.to_left - cut.to_right) * cut.left;
-    if (FitsAcross(costmap, shrunk, middle, cut)) continue;
-    return NarrowPlace{
-        {middle.x(), middle.y(), cut.yaw()}, cut.width(), WidthOf(footprint.outline)};
+    const bool fits = (is_clear || FitsAcross(costmap, shrunk, middle, cut, kCoarse)) &&
+                      (!is_tight || FitsAcross(costmap, footprint, middle, cut, kFine));
+    if (fits) continue;
+    return NarrowPlace{{middle.x(), middle.y(), cut.yaw()}, cut.width(), needed};
   }
   return std::nullopt;
 }
@@ -455,8 +543,40 @@ std::string WhyBlocked(const DrivingContext& context, const Costmap& costmap,
                        explainer.BaseText(needed), heights);
   }
   return fmt::format("{} is {:.2f} m from {}, wanted at least {:.2f} m; {}{}", where,
-                     std::max(0.0, distance - 0.5 * costmap.resolution()), what, 0.5 * needed,
-                     explainer.BaseText(needed), heights);
+                     std::max(0.0, distance - 0.5 * costmap.resolution()), what,
+                     explainer.LeastDistance(), explainer.BaseText(needed), heights);
+}
+
+std::string WhyStuck(const Costmap& costmap, const geometry::Polygon& footprint,
+                     const Pose2& X_MB) {
+  constexpr double kAround = 0.5;  // [m] from what the base takes up, however it is headed
+  const double reach = geometry::CircumscribedRadius(footprint) + kAround;
+  const int cells = static_cast<int>(std::ceil(reach / costmap.resolution()));
+  int column = 0, row = 0, num_unknown = 0;
+  costmap.CellOf(X_MB.position(), &column, &row);
+  double to_unknown = reach, to_known = reach;
+  Eigen::Vector2d nearest = X_MB.position();
+  for (int y = row - cells; y <= row + cells; ++y) {
+    for (int x = column - cells; x <= column + cells; ++x) {
+      if (!costmap.Inside(x, y) || !IsTaken(costmap, x, y)) continue;
+      const double distance = (costmap.CentreOf(x, y) - X_MB.position()).norm();
+      if (costmap.cost(x, y) != navigation::kUnknownCost) {
+        to_known = std::min(to_known, distance);
+        continue;
+      }
+      num_unknown += distance <= reach ? 1 : 0;
+      if (distance >= to_unknown) continue;
+      to_unknown = distance;
+      nearest = costmap.CentreOf(x, y);
+    }
+  }
+  if (num_unknown == 0 || to_known < to_unknown) return {};
+  return fmt::format(
+      "{} unmapped (unknown) cell{} of the map within {:.1f} m of x {:.2f} m, y {:.2f} m, the "
+      "nearest at x {:.2f} m, y {:.2f} m, count{} as obstacles; map them, or let what is unknown "
+      "count as free (driving.costmap.unknown_is_lethal: false)",
+      num_unknown, num_unknown == 1 ? "" : "s", reach, X_MB.x, X_MB.y, nearest.x(), nearest.y(),
+      num_unknown == 1 ? "s" : "");
 }
 
 std::string WhyNoPath(const DrivingContext& context, const Costmap& costmap, const Pose2& X_MStart,
@@ -465,13 +585,19 @@ std::string WhyNoPath(const DrivingContext& context, const Costmap& costmap, con
   const auto ends_at = [](const Eigen::Vector2d& p_M) {
     return fmt::format("the way ends at x {:.2f} m, y {:.2f} m", p_M.x(), p_M.y());
   };
-  const auto too_narrow = [&](const Eigen::Vector2d& p_M, double width, double needed) {
+  const auto too_narrow = [&](const Eigen::Vector2d& p_M, const Eigen::Vector2d& left, double width,
+                              double needed) {
     const auto nearest = explainer.NearestObstacle(p_M);
-    return fmt::format("{}: it is {:.2f} m wide there{}; {}{}", ends_at(p_M), width,
+    return fmt::format("{}: {}{}; {}{}", ends_at(p_M),
+                       explainer.WidthText(p_M, left, width, needed),
                        nearest ? " beside " + explainer.WhatIsAt(*nearest) : "",
                        explainer.BaseText(needed), nearest ? explainer.HeightText(*nearest) : "");
   };
-  if (narrow) return too_narrow(narrow->X_MW.position(), narrow->width, narrow->footprint_width);
+  if (narrow) {
+    const double yaw = narrow->X_MW.yaw;
+    return too_narrow(narrow->X_MW.position(), {-std::sin(yaw), std::cos(yaw)}, narrow->width,
+                      narrow->footprint_width);
+  }
   const std::vector<Eigen::Vector2d> cells = Intrusion(costmap).Find(X_MStart, X_MGoal);
   const auto is_room = [&](const Eigen::Vector2d& p_M) {
     return CostAt(costmap, p_M) < navigation::kInscribedCost;
@@ -490,15 +616,20 @@ std::string WhyNoPath(const DrivingContext& context, const Costmap& costmap, con
                        explainer.HeightText(*solid));
   }
   std::optional<double> least;
-  Eigen::Vector2d narrowest = end;
+  Eigen::Vector2d narrowest = end, left(0.0, 1.0);
   for (auto cell = last; cell != beyond; ++cell) {
     const auto nearest = explainer.NearestObstacle(*cell);
     const auto width = nearest ? explainer.WidthAt(*cell, *nearest) : std::nullopt;
     if (!width || (least && *width >= *least)) continue;
     least = width;
     narrowest = *cell;
+    left = (*nearest - *cell).normalized();
   }
-  return too_narrow(narrowest, least.value_or(0.0), explainer.NeededWidth());
+  const double needed = explainer.NeededWidth();
+  if (!least)
+    return fmt::format("{}: there is too little room; {}", ends_at(end),
+                       explainer.BaseText(needed));
+  return too_narrow(narrowest, left, *least, needed);
 }
 
 }  // namespace hires::skills

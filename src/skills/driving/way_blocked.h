@@ -15,13 +15,14 @@ namespace hires::skills {
 struct NarrowPlace {
   geometry::Pose2 X_MW;         ///< in its middle, x along the way
   double width{0.0};            ///< [m] free
-  double footprint_width{0.0};  ///< [m] across its heading
+  double footprint_width{0.0};  ///< [m] across its heading, as it needs least room
 };
 
 /// The first pose of a path that lies in a passage, straight on through its narrowest cut, where
 /// the footprint, driving 0.6 m straight on, touches something at all places of the cut and all
-/// headings within 0.52 rad of the passage's; none: it may pass. What lies within the footprint's
-/// reach of both ends does not count: there a base may turn as it needs.
+/// headings within 0.52 rad of the passage's; none: it may pass. Where less than two cells would be
+/// left, that is tried with the whole footprint, else with one that is 0.03 m smaller. What lies
+/// within the footprint's reach of both ends does not count: there a base may turn as it needs.
 /// @param footprint  convex, in the base frame, as local control has it.
 std::optional<NarrowPlace> FindTooNarrow(const navigation::Costmap& costmap,
                                          const navigation::Footprint& footprint,
@@ -36,6 +37,11 @@ navigation::Costmap WithClosed(const navigation::Costmap& costmap, const NarrowP
 /// @param place  "start", "goal".
 std::string WhyBlocked(const DrivingContext& context, const navigation::Costmap& costmap,
                        const std::string& place, const geometry::Pose2& X_MB);
+
+/// Why a base may have got stuck where it is, as far as the map tells: what is nearest to it are
+/// cells that nobody has mapped (how many, where). Else empty.
+std::string WhyStuck(const navigation::Costmap& costmap, const geometry::Polygon& footprint,
+                     const geometry::Pose2& X_MB);
 
 /// Where the way from start to goal ends, and by what; heights as above.
 /// @param narrow  where the footprint is too wide, if that is why; else null.
