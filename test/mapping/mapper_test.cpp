@@ -222,8 +222,8 @@ void SendTurnsInBursts(SimulatedDrive* drive) {
     const double last = odometry[end - 1].time;
     for (std::size_t i = begin; i < end; ++i) {
       const double share = static_cast<double>(i - begin + 1) / static_cast<double>(end - begin);
-      stamp_of[odometry[i].time] = end - begin > 1 && i > begin ? last - 0.01 * (1.0 - share)
-                                                                : odometry[i].time;
+      stamp_of[odometry[i].time] =
+          end - begin > 1 && i > begin ? last - 0.01 * (1.0 - share) : odometry[i].time;
     }
     begin = end;
   }
@@ -283,15 +283,16 @@ TEST(MapperTest, AHallPullsNobodyAlongIt) {
   world::OccupancyGrid hall{0.05, 840, 80, {0.0, 0.0}, {}};
   hall.cells.assign(std::size_t{840} * 80, world::Cell::kOccupied);
   for (int row = 20; row < 60; ++row)
-    for (int column = 20; column < 820; ++column) hall.cells[row * 840 + column] = world::Cell::kFree;
+    for (int column = 20; column < 820; ++column)
+      hall.cells[row * 840 + column] = world::Cell::kFree;
   SimulatedDriveParams params = test_support::ExactOdometry();
   params.scale_error = 0.002;
   params.beams = 181;
   for (int round = 0; round < hires::test_support::Rounds(12); ++round) {
     params.range_noise = 0.02 * (round % 3);
     SCOPED_TRACE(testing::Message() << round << " " << params.range_noise);
-    const SimulatedDrive drive = DriveThrough(hall, {{2.0, 2.0}, {40.0, 2.0}, {2.0, 2.0}}, params,
-                                              base::Rng(9).Fork(round));
+    const SimulatedDrive drive =
+        DriveThrough(hall, {{2.0, 2.0}, {40.0, 2.0}, {2.0, 2.0}}, params, base::Rng(9).Fork(round));
     EXPECT_LE(TrajectoryRms(MakeMap(drive.log).trajectory, drive.truth), 0.25);
   }
 }

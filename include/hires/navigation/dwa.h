@@ -59,8 +59,9 @@ struct DwaResult {
 /// is brought back by the window; every other one, and that one if it misses again or swings beside
 /// its goal, creeps there straight, or turns, drives what is missing and turns back. A base that
 /// cannot move sideways and comes no further on its way, or stands without a valid velocity there,
-/// turns and drives straight, forward and backward, to where its way goes on. No velocity is ever given whose footprint touches an obstacle, its interior included. The same calls give the
-/// same velocities. A copy goes on from the same state on its own.
+/// turns and drives straight, forward and backward, to where its way goes on. No velocity is ever
+/// given whose footprint touches an obstacle, its interior included. The same calls give the same
+/// velocities. A copy goes on from the same state on its own.
 class DwaPlanner {
  public:
   /// @param footprint  Convex, padded, in the base frame [m].

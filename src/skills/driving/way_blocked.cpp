@@ -313,8 +313,7 @@ class Explainer {
   std::string WidthText(const Eigen::Vector2d& p_M, const Eigen::Vector2d& left, double by_cells,
                         double needed) const {
     const auto by_things = WidthBetweenThings(p_M, left);
-    const bool is_it =
-        by_things && *by_things >= by_cells && *by_things <= by_cells + 3.0 * costmap_.resolution();
+    const bool is_it = by_things && *by_things <= by_cells + 3.0 * costmap_.resolution();
     if (!is_it) return fmt::format("it is {:.2f} m wide there", by_cells);
     std::string text = fmt::format("it is {:.2f} m wide there", *by_things);
     if (*by_things >= needed)
