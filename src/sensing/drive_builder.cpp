@@ -81,7 +81,7 @@ void DriveBuilder::InOrder(double time, const std::string& what, double* last) {
 
 void DriveBuilder::OnScan(double stamp, const std::string& frame, robot::ScanReading reading) {
   ++num_scans_;
-  if (!HasMoment(stamp)) return LeaveOut("scans without a stamp");
+  if (!HasMoment(stamp)) return LeaveOut("scans whose header.stamp is zero");
   InOrder(stamp, "a scan", &last_scan_);
   num_ranges_ += reading.ranges.size();
   if (num_ranges_ > kMostRanges) {
@@ -102,7 +102,7 @@ void DriveBuilder::OnScan(double stamp, const std::string& frame, robot::ScanRea
 
 void DriveBuilder::OnOdometry(double stamp, const std::string& base_frame,
                               const robot::OdometryReading& reading) {
-  if (!HasMoment(stamp)) return LeaveOut("readings of the odometry without a stamp");
+  if (!HasMoment(stamp)) return LeaveOut("readings of the odometry whose header.stamp is zero");
   if (!IsPose(reading.X_OB))
     return LeaveOut("readings of the odometry that are no numbers within 1e6 m");
   const std::string base = BareFrame(base_frame);
@@ -121,7 +121,8 @@ void DriveBuilder::OnOdometry(double stamp, const std::string& base_frame,
 }
 
 void DriveBuilder::OnInertia(double stamp, const std::string& frame, const UnitReading& reading) {
-  if (!HasMoment(stamp)) return LeaveOut("readings of the inertial unit without a stamp");
+  if (!HasMoment(stamp))
+    return LeaveOut("readings of the inertial unit whose header.stamp is zero");
   const bool is_usable =
       reading.R_WI ? reading.R_WI->coeffs().allFinite() : reading.w_I.norm() < kMostRate;
   if (!is_usable) {
@@ -291,7 +292,7 @@ void DriveBuilder::RequireScans() const {
       fmt::format("{}: none of its {} scans can be used{}", recording_, num_scans_, LeftOutText()));
 }
 
-/// "; left out: 3 scans without a stamp", or nothing.
+/// "; left out: 3 scans whose header.stamp is zero", or nothing.
 std::string DriveBuilder::LeftOutText() const {
   std::vector<std::string> parts;
   for (const auto& [what, count] : left_out_) parts.push_back(fmt::format("{} {}", count, what));

@@ -191,22 +191,24 @@ TEST_F(ImagineRecordingTest, ABagWithoutImagineTopicsListsWhatIsThere) {
   EXPECT_THAT(Error(), HasSubstr("it is empty"));
 }
 
-TEST_F(ImagineRecordingTest, ABagWithoutIndexSaysHowToMendIt) {
+TEST_F(ImagineRecordingTest, ABagWithoutIndexIsRead) {
   WriteGoodBag();
   Damage([](std::string* bytes) {  // as a recording that was killed leaves it
     const std::string key = "index_pos=";
     bytes->replace(bytes->find(key) + key.size(), 8, std::string(8, '\0'));
   });
-  EXPECT_THAT(Error(), AllOf(HasSubstr("has no index"), HasSubstr("rosbag reindex " + path_)));
+  EXPECT_NO_THROW(ReadImagineRecording(path_, ""));
 }
 
-TEST_F(ImagineRecordingTest, ABagThatIsCutOffSaysHowToMendIt) {
+TEST_F(ImagineRecordingTest, OfABagThatIsCutOffWhatIsWholeIsRead) {
   WriteGoodBag();
   const std::uintmax_t size = fs::file_size(path_);
-  for (const std::uintmax_t kept : {size - 1, size * 3 / 4, size / 2, std::uintmax_t{4200},
-                                    std::uintmax_t{100}, std::uintmax_t{13}}) {
+  fs::resize_file(path_, size - 1);
+  EXPECT_NO_THROW(ReadImagineRecording(path_, ""));
+  for (const std::uintmax_t kept :
+       {std::uintmax_t{4200}, std::uintmax_t{100}, std::uintmax_t{13}}) {
     fs::resize_file(path_, kept);
-    EXPECT_THAT(Error(), HasSubstr("rosbag reindex")) << kept << " bytes";
+    EXPECT_THAT(Error(), HasSubstr("no whole message is in it")) << kept << " bytes";
   }
 }
 

@@ -210,15 +210,11 @@ class ReplayEpisodeTest(unittest.TestCase):
         with rosbag.Bag(path) as bag:
             self.assertEqual({m.goal_id.id for _, m, _ in bag.read_messages('/execute_action/goal')}, {'alone'})
 
-    def test_a_recorder_that_is_killed_leaves_a_bag_that_can_be_mended(self):
+    def test_a_recorder_that_is_killed_leaves_a_bag_that_can_be_read(self):
         path = self.record_what_is_played('killed', signal.SIGKILL).bag('.bag.active')
-        code, output, _ = self.replay(path, '--local')
-        self.assertEqual(code, 1, output)
-        self.assertIn('rosbag reindex', output)
-        mend = self.system.run(['rosbag', 'reindex', path])
-        self.assertEqual(mend.wait(), 0, mend.output())
         code, output, replayed = self.replay(path, '--local')
         self.assertEqual(code, 0, output)
+        self.assertIn('whole messages are read', output)
         self.assertEqual([s['action'] for s in self.steps(replayed)],
                          [s['action'] for s in self.steps(self.replayed)])
 

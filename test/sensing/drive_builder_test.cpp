@@ -215,10 +215,11 @@ TEST(DriveBuilderTest, BrokenReadingsOfAUnitAreLeftOut) {
         builder->OnInertia(11.0, "base_link", kRate);
       },
       tree, 1);
-  EXPECT_THAT(said, AllOf(HasSubstr("left out 2 readings of the inertial unit without a stamp"),
-                          HasSubstr("left out 3 readings of the inertial unit that are no numbers "
-                                    "within 100 rad/s"),
-                          HasSubstr("left out 1 readings with the stamp of another one")));
+  EXPECT_THAT(
+      said, AllOf(HasSubstr("left out 2 readings of the inertial unit whose header.stamp is zero"),
+                  HasSubstr("left out 3 readings of the inertial unit that are no numbers "
+                            "within 100 rad/s"),
+                  HasSubstr("left out 1 readings with the stamp of another one")));
 }
 
 TEST(DriveBuilderTest, ReadingsOfAUnitThatComeLateArePutInOrder) {

@@ -2,7 +2,9 @@
 
 #include <fmt/format.h>
 #include <rosbag/view.h>
+#include <stdlib.h>
 #include <sys/resource.h>
+#include <tf2_msgs/TFMessage.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -16,7 +18,9 @@
 #include <utility>
 
 #include "hires/base/error.h"
+#include "hires/base/log.h"
 #include "hires/base/text.h"
+#include "nodes/hires/bag_salvage.h"
 
 namespace hires_ros {
 namespace {
@@ -86,6 +90,9 @@ std::uint64_t NumberAt(const std::string& bytes, std::size_t at, std::size_t siz
   return number;
 }
 
+/// It stops within a record, as a copy that was cut off does, or a recording that goes on.
+struct EndsEarly {};
+
 /// Walks through a bag of format 2.0 before rosbag does, which believes what stands in it: a wrong
 /// length or offset makes it read beyond its buffers.
 class BagCheck {
@@ -95,14 +102,15 @@ class BagCheck {
     size_ = static_cast<std::uint64_t>(file_.tellg());
   }
 
-  /// @throws ConfigError for what no recorder writes.
+  /// @throws ConfigError for what no recorder writes, EndsEarly.
   void Run() {
     const std::string line = Read(0, std::min<std::uint64_t>(size_, kFirstLine.size()));
     if (line != kFirstLine) return;  // rosbag itself refuses what it does not know
     for (std::uint64_t at = kFirstLine.size(); at < size_;) {
       at = TakeRecord(at);
-      if (index_at_ == 0) return;  // there is no index, which rosbag says
+      if (index_at_ == 0) throw EndsEarly();  // there is no index
     }
+    if (index_at_ == 0 || index_at_ > size_ || indexed_.size() < num_chunks_) throw EndsEarly();
     const bool ends_well = index_at_ == size_ || records_.count(index_at_) > 0;
     if (!ends_well) Fail("its index is not where its header says");
     for (const std::uint64_t chunk : indexed_) {
@@ -114,13 +122,14 @@ class BagCheck {
   using Fields = std::map<std::string, std::string>;
   static constexpr std::uint64_t kMostHeader = 1 << 20;  // [bytes]
   static constexpr std::uint64_t kMostChunk = 1 << 29;   // [bytes]
+  static constexpr std::size_t kIndexEntry = 12;         // [bytes]
   static inline const std::string kFirstLine = "#ROSBAG V2.0\n";
   enum Op { kMessage = 2, kFileHeader = 3, kIndex = 4, kChunk = 5, kChunkInfo = 6 };
 
   [[noreturn]] void Fail(const std::string& what) const { FailBroken(path_, what); }
 
   std::string Read(std::uint64_t at, std::uint64_t size) {
-    if (at > size_ || size > size_ - at) Fail("it ends too early");
+    if (at > size_ || size > size_ - at) throw EndsEarly();
     std::string bytes(size, '\0');
     file_.clear();
     file_.seekg(static_cast<std::streamoff>(at));
@@ -161,12 +170,16 @@ class BagCheck {
     if (header_size > kMostHeader) Fail("a header claims to be larger than 1 MB");
     const Fields fields = FieldsOf(Read(at + 4, header_size), 0, header_size);
     const std::uint64_t data_at = at + 8 + header_size;
-    const std::uint64_t data_size = NumberAt(Read(data_at - 4, 4), 0, 4);
-    if (data_size > size_ - data_at) Fail("it ends too early");
+    const bool is_index = NumberOf(fields, "op", 1) == kIndex;
+    // Recorders of 2010 wrote another length than that of the entries that they count.
+    const std::uint64_t data_size = is_index ? NumberOf(fields, "count", 4) * kIndexEntry
+                                             : NumberAt(Read(data_at - 4, 4), 0, 4);
+    if (data_size > size_ - data_at) throw EndsEarly();
     records_.insert(at);
     switch (NumberOf(fields, "op", 1)) {
       case kFileHeader:
         index_at_ = NumberOf(fields, "index_pos", 8);
+        num_chunks_ = NumberOf(fields, "chunk_count", 4);
         break;
       case kChunk:
         chunks_.insert(at);
@@ -187,10 +200,9 @@ class BagCheck {
 
   /// Of the chunk before it: time and place of each message of a connection.
   void CheckIndex(const std::string& entries, std::uint64_t count) const {
-    constexpr std::size_t kEntry = 12, kTime = 8;
-    if (entries.size() != count * kEntry) Fail("an index is not as long as it says");
+    constexpr std::size_t kTime = 8;
     for (std::size_t i = 0; i < count; ++i) {
-      const std::size_t at = NumberAt(entries, i * kEntry + kTime, 4);
+      const std::size_t at = NumberAt(entries, i * kIndexEntry + kTime, 4);
       if (at + 8 > chunk_size_) Fail("a message begins beyond its chunk");
       if (!chunk_.empty()) CheckMessage(at);
     }
@@ -216,6 +228,7 @@ class BagCheck {
   std::ifstream file_;
   std::uint64_t size_{0};               // [bytes]
   std::uint64_t index_at_{0};           // by the file's header
+  std::uint64_t num_chunks_{0};         // likewise
   std::set<std::uint64_t> records_;     // where they begin
   std::set<std::uint64_t> chunks_;      // likewise
   std::vector<std::uint64_t> indexed_;  // chunks by the index
@@ -223,18 +236,72 @@ class BagCheck {
   std::uint64_t chunk_size_{0};         // [bytes] unpacked
 };
 
+/// A file that is gone with this, though not for who has opened it.
+class ScopedFile {
+ public:
+  ScopedFile() {
+    path_ = (std::filesystem::temp_directory_path() / "hires_bag_XXXXXX").string();
+    const int descriptor = mkstemp(path_.data());
+    if (descriptor < 0)
+      throw ConfigError(fmt::format("{}: cannot be written; free some space there", path_));
+    close(descriptor);
+  }
+  ~ScopedFile() { unlink(path_.c_str()); }
+  ScopedFile(const ScopedFile&) = delete;
+  ScopedFile& operator=(const ScopedFile&) = delete;
+  const std::string& path() const { return path_; }
+
+ private:
+  std::string path_;
+};
+
+/// What is whole of a bag that ends early, or has no index.
+void OpenSalvaged(const std::string& path, rosbag::Bag* bag) {
+  const ScopedFile file;
+  const Salvaged salvaged = SalvageBag(path, file.path());
+  if (salvaged.format.empty()) {
+    throw ConfigError(fmt::format(
+        "{}: is a bag of a format that is not read; wanted 2.0 (since 2010) or 1.2", path));
+  }
+  const std::string what = fmt::format(
+      "{} (format {}): {}", path, salvaged.format,
+      salvaged.ends_early ? "ends within a record, as a copy that was cut off, or a recording that "
+                            "goes on or was killed"
+                          : "has no index, as a recording that was killed");
+  const std::string packed =
+      salvaged.num_packed == 0
+          ? ""
+          : fmt::format("; {} compressed parts are left out", salvaged.num_packed);
+  if (salvaged.num_messages == 0) {
+    throw ConfigError(fmt::format(
+        "{}; no whole message is in it{}; copy it once more, or record again{}", what, packed,
+        salvaged.num_packed == 0 ? "" : fmt::format(", or try `rosbag reindex {}`", path)));
+  }
+  hires::base::Log(hires::base::LogLevel::kWarn, fmt::format("{}: {} whole messages are read{}",
+                                                             what, salvaged.num_messages, packed));
+  bag->open(file.path(), rosbag::bagmode::Read);
+}
+
+/// Types are judged by their definition: some had other names before.
+std::string TypeOf(const rosbag::ConnectionInfo& info) {
+  using Transforms = tf2_msgs::TFMessage;
+  if (info.md5sum == ros::message_traits::md5sum<Transforms>())
+    return ros::message_traits::datatype<Transforms>();
+  return info.datatype;
+}
+
 }  // namespace
 
 void OpenBag(const std::string& path, rosbag::Bag* bag) {
   RequireBagFile(path);
-  BagCheck(path).Run();
   try {
+    BagCheck(path).Run();
     bag->open(path, rosbag::bagmode::Read);
+  } catch (const EndsEarly&) {
+    OpenSalvaged(path, bag);
   } catch (const rosbag::BagUnindexedException&) {
-    throw ConfigError(
-        fmt::format("{}: has no index, because its recording goes on or was cut off; end the "
-                    "recording (Ctrl-C), or mend the bag with `rosbag reindex {}`",
-                    path, path));
+    bag->close();
+    OpenSalvaged(path, bag);
   }
 }
 
@@ -242,7 +309,7 @@ std::vector<BagTopic> TopicsOfBag(const rosbag::Bag& bag) {
   std::map<std::string, BagTopic> topics;
   for (const rosbag::ConnectionInfo* info : rosbag::View(bag).getConnections()) {
     const auto is_this = [&](const rosbag::ConnectionInfo* other) { return other->id == info->id; };
-    const BagTopic topic{{info->topic, info->datatype, 0}, info->md5sum};
+    const BagTopic topic{{info->topic, TypeOf(*info), 0}, info->md5sum};
     auto& kept =
         topics.emplace(topic.name + ' ' + topic.type + ' ' + topic.md5sum, topic).first->second;
     kept.num_messages += rosbag::View(bag, is_this).size();

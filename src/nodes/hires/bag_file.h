@@ -15,8 +15,9 @@ struct BagTopic : hires::reports::BagTopic {
   std::string md5sum;
 };
 
-/// @throws hires::base::ConfigError: no such bag, no bag, one without an index, or with lengths and
-/// offsets that lead out of it.
+/// Of a bag that ends early or has no index what is whole is read, with a warning.
+/// @throws hires::base::ConfigError: no such bag, no bag, one of which no message can be read, or
+/// with lengths and offsets that lead out of it.
 void OpenBag(const std::string& path, rosbag::Bag* bag);
 
 std::vector<BagTopic> TopicsOfBag(const rosbag::Bag& bag);

@@ -36,7 +36,7 @@ using Types = std::vector<std::string>;
 const Types kScanTypes{"sensor_msgs/LaserScan", "sensor_msgs/MultiEchoLaserScan"};
 const Types kOdometryTypes{"nav_msgs/Odometry"};
 const Types kInertiaTypes{"sensor_msgs/Imu"};
-const Types kTransformTypes{"tf2_msgs/TFMessage", "tf/tfMessage"};
+const Types kTransformTypes{"tf2_msgs/TFMessage"};
 constexpr char kTf[] = "/tf", kTfStatic[] = "/tf_static";
 constexpr double kLeastTurn = 0.1;  // length of a quaternion that means something
 

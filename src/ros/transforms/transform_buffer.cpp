@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "hires/ros/values/geometry_messages.h"
 
@@ -67,10 +68,9 @@ TransformBuffer::News TransformBuffer::Take(const tf2_msgs::TFMessage& msg, bool
 
 /// tf2 prints a warning of two lines for each that comes twice.
 bool TransformBuffer::IsRepeated(const geometry_msgs::TransformStamped& msg) {
-  ros::Time& newest = newest_[msg.child_frame_id];
-  const bool is_repeated = !msg.header.stamp.isZero() && newest == msg.header.stamp;
-  newest = msg.header.stamp;
-  return is_repeated;
+  const auto [newest, is_first] = newest_.emplace(msg.child_frame_id, msg.header.stamp);
+  if (is_first) return false;
+  return std::exchange(newest->second, msg.header.stamp) == msg.header.stamp;
 }
 
 /// A frame may be hung elsewhere once, as what is taken up by a hand; one that is hung back has two

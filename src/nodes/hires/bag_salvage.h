@@ -1,0 +1,21 @@
+#pragma once
+
+#include <cstddef>
+#include <string>
+
+namespace hires_ros {
+
+/// What could be read of a bag from its front, without an index.
+struct Salvaged {
+  std::string format;           ///< "2.0", "1.2"; empty: no bag
+  std::size_t num_messages{0};  ///< that are whole
+  std::size_t num_packed{0};    ///< chunks that are compressed, whose messages are left out
+  bool ends_early{false};       ///< within a record
+};
+
+/// Copies all whole messages of a bag (format 2.0 or 1.2) to a new bag, with their times. Ends
+/// where a record is cut off, or its lengths lead out of the file.
+/// @throws ros::Exception, hires::base::ConfigError if `into` cannot be written.
+Salvaged SalvageBag(const std::string& path, const std::string& into);
+
+}  // namespace hires_ros
