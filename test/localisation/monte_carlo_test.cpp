@@ -499,6 +499,28 @@ TEST(LocaliseLogTest, RobotThatWasFoundInTheWrongRoomFirstIsToldToBeElsewhere) {
   EXPECT_GE(num_relocated, num_wrong_before);
 }
 
+LocalisedLog LocaliseFromAnywhere(const RobotLog& log, const OccupancyGrid& map, int seed) {
+  MonteCarloLocalisation filter(map, {}, base::Rng(seed));
+  filter.GlobalLocalisation();
+  return LocaliseLog(log, filter, "localising");
+}
+
+TEST(LocaliseLogTest, AMapOfAnotherBuildingIsDoubtedAndThatOfThePlaceIsNot) {
+  for (int seed = 1; seed <= hires::test_support::Rounds(8); ++seed) {
+    SCOPED_TRACE(seed);
+    const SimulatedDrive drive = Drive(seed, RoomsWithShelf());
+    const LocalisedLog here = LocaliseFromAnywhere(drive.log, RoomsWithShelf(), seed);
+    EXPECT_EQ(here.last.status, LocalisationStatus::kGood);
+    EXPECT_EQ(WhyDoubtful(here), "");
+    const LocalisedLog elsewhere =
+        LocaliseFromAnywhere(drive.log, test_support::CorridorRoundABlock(), seed);
+    EXPECT_TRUE(elsewhere.last.status != LocalisationStatus::kGood ||
+                !WhyDoubtful(elsewhere).empty())
+        << elsewhere.path.size() << " poses of " << elsewhere.num_since << ", explained "
+        << elsewhere.explained_since << ", elsewhere " << elsewhere.num_relocations;
+  }
+}
+
 TEST(LocaliseLogTest, ScansWithoutOdometryAreCounted) {
   SimulatedDrive drive = Drive(3);
   drive.log.odometry.clear();

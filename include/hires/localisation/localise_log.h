@@ -21,10 +21,17 @@ struct LocalisedLog {
   int num_relocations{0};
   double explained{0.0};  ///< mean over the scans that were judged: share of beams that end near an
                           ///< obstacle of the map
-  PoseEstimate last;      ///< after the last scan
+  int num_since{0};       ///< scans from the first with a pose on, that one included
+  double explained_since{0.0};            ///< the mean over those
+  PoseEstimate last;                      ///< after the last scan
   std::optional<double> localised_after;  ///< [s] from the first scan; nothing: never
   std::optional<double> relocated_after;  ///< [s] the last time; nothing: never
 };
+
+/// What speaks against the map being one of where the drive was: that the robot was found elsewhere
+/// again and again (5 times, and more than once in 20 poses), that most scans from the first pose
+/// on have none, or that less than 65 % of the beams are explained from there. Empty: nothing does.
+std::string WhyDoubtful(const LocalisedLog& localised);
 
 /// Lets a filter hear all scans of a log, each with the odometry of its time: as the log itself
 /// says it, else between the readings around it, or the nearest one within 0.5 s.

@@ -35,9 +35,15 @@ struct Answer {
   LocalisedLog localised;
   double in_walls{0.0};  // share of the path's poses: the base's middle in an occupied cell
 
+  /// What speaks against this map; empty: nothing does.
+  std::string doubt() const { return localisation::WhyDoubtful(localised); }
   bool is_localised() const {
-    return localised.last.status == localisation::LocalisationStatus::kGood;
+    return localised.last.status == localisation::LocalisationStatus::kGood && doubt().empty();
   }
+  std::string status() const {
+    return doubt().empty() ? localisation::ToString(localised.last.status) : "doubtful";
+  }
+  bool has_path() const { return !localised.path.empty() && doubt().empty(); }
   Eigen::Vector3d sd() const {
     return localised.last.covariance.diagonal().cwiseMax(0.0).cwiseSqrt();
   }
@@ -113,14 +119,15 @@ ordered_json ToJson(const Answer& answer, const LocaliseOptions& options) {
           {"version", 1},
           {"log", options.drive.log},
           {"map", options.map},
-          {"trajectory", localised.path.empty() ? "" : options.trajectory},
+          {"trajectory", answer.has_path() ? options.trajectory : ""},
           {"seed", options.seed},
           {"initial", answer.initial ? ToJson(*answer.initial) : ordered_json(nullptr)},
           {"scans", answer.num_scans},
           {"poses", localised.path.size()},
           {"duration", answer.duration},
           {"length", localisation::LengthOf(localised.path)},
-          {"status", localisation::ToString(localised.last.status)},
+          {"status", answer.status()},
+          {"doubt", answer.doubt()},
           {"pose", ToJson(localised.last.X_MB)},
           {"sd", {sd.x(), sd.y(), sd.z()}},
           {"explained", localised.explained},
@@ -167,9 +174,13 @@ std::string Summary(const Answer& answer, const LocaliseOptions& options) {
          Line("its sd",
               fmt::format("x {:.3f} m, y {:.3f} m, yaw {:.3f} rad", sd.x(), sd.y(), sd.z())) +
          Line("explained", fmt::format("{:.0f} % of the beams", 100.0 * localised.explained)) +
-         (walls.empty() ? "" : Line("in walls", walls)) +
-         Line("status", localisation::ToString(localised.last.status)) +
-         Line("seed", std::to_string(options.seed));
+         (walls.empty() ? "" : Line("in walls", walls)) + Line("status", answer.status()) +
+         Line("seed", std::to_string(options.seed)) +
+         (answer.doubt().empty()
+              ? ""
+              : fmt::format("{} is probably not a map of where {} was recorded: {}; no trajectory "
+                            "is written\n",
+                            options.map, options.drive.log, answer.doubt()));
 }
 
 Answer Localise(const LocaliseOptions& options, const localisation::MonteCarloParams& defaults,
@@ -227,7 +238,7 @@ int RunLocaliseVerb(const LocaliseOptions& options, const std::string& package_f
   const auto config = localisation::ReadLocalisationConfig(base::ParamReader::FromFile(
       options.config.empty() ? package_folder + "/config/localisation.yaml" : options.config));
   const Answer answer = Localise(options, config.filter, package_folder, read_bag);
-  if (!answer.localised.path.empty())
+  if (answer.has_path())
     localisation::WriteTumTrajectory(answer.localised.path, options.trajectory);
   if (options.json == "-") {
     std::cout << ToJson(answer, options).dump(2) << '\n';
