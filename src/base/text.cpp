@@ -127,8 +127,9 @@ std::string ReadTextFile(const std::string& path, std::size_t max_bytes) {
   text << stream.rdbuf();
   if (!stream) throw ConfigError(fmt::format("{}: cannot be read; check its permissions", path));
   constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";  // of editors that write UTF-8 so
-  const std::string read = text.str();
-  return read.rfind(kByteOrderMark, 0) == 0 ? read.substr(kByteOrderMark.size()) : read;
+  std::string read = text.str();
+  if (read.rfind(kByteOrderMark, 0) == 0) read.erase(0, kByteOrderMark.size());
+  return read;
 }
 
 void ReplaceTextFile(const std::string& path, const std::string& text) {

@@ -17,7 +17,7 @@ using geometry::Pose2;
 constexpr double kUsualSpeed = 0.5;          // [m/s], [rad/s] of times that are made up
 constexpr double kShortest = 0.01;           // [s] between two of them
 constexpr double kLongest = 1.0;             // [s]; a reset of the odometry stays one
-constexpr double kFewScans = 5;              // that tell nothing
+constexpr std::size_t kFewReadings = 5;      // that tell nothing
 constexpr double kContradiction = 1.0;       // [m], [rad]
 constexpr double kContradictingShare = 0.1;  // of the scans
 constexpr double kNoMotion = 0.01;           // of the odometry's way
@@ -32,7 +32,7 @@ std::size_t NumOfSameTime(const Readings& readings) {
 
 template <typename Readings>
 bool DoTimesStand(const Readings& readings) {
-  return readings.size() > kFewScans && 2 * NumOfSameTime(readings) > readings.size();
+  return readings.size() > kFewReadings && 2 * NumOfSameTime(readings) > readings.size();
 }
 
 /// A reading of either kind.
@@ -85,8 +85,8 @@ class Agreement {
   void Take(const Pose2& X_SB, const Pose2* before, const Pose2* behind) {
     if (!before) return;
     if (!X_SO_) X_SO_ = X_SB * before->Inverse();
-    const double error =
-        std::min(ErrorOf(X_SB, *before), behind ? ErrorOf(X_SB, *behind) : ErrorOf(X_SB, *before));
+    double error = ErrorOf(X_SB, *before);
+    if (behind) error = std::min(error, ErrorOf(X_SB, *behind));
     ++num_compared_;
     if (error > kContradiction) ++num_contradicting_;
     if (last_) way_ += (X_SB.position() - last_->position()).norm();
