@@ -15,6 +15,7 @@
 #include <new>
 #include <set>
 #include <stdexcept>
+#include <string_view>
 #include <utility>
 
 #include "hires/base/error.h"
@@ -84,10 +85,7 @@ void RequireBagFile(const std::string& path) {
 }
 
 std::uint64_t NumberAt(const std::string& bytes, std::size_t at, std::size_t size) {
-  std::uint64_t number = 0;  // least significant byte first
-  for (std::size_t i = size; i > 0; --i)
-    number = number << 8 | static_cast<unsigned char>(bytes[at + i - 1]);
-  return number;
+  return NumberIn(std::string_view(bytes).substr(at, size));
 }
 
 /// It stops within a record, as a copy that was cut off does, or a recording that goes on.

@@ -20,13 +20,6 @@ enum Op { kDefinition = 1, kMessage = 2, kChunk = 5, kConnection = 7 };
 
 using Fields = std::map<std::string, std::string>;
 
-std::uint64_t NumberIn(std::string_view bytes) {
-  std::uint64_t number = 0;  // least significant byte first
-  for (std::size_t i = bytes.size(); i > 0; --i)
-    number = number << 8 | static_cast<unsigned char>(bytes[i - 1]);
-  return number;
-}
-
 /// Takes lengths and what is as long from the front of some bytes.
 class Cursor {
  public:
@@ -200,6 +193,13 @@ class Salvage {
 };
 
 }  // namespace
+
+std::uint64_t NumberIn(std::string_view bytes) {
+  std::uint64_t number = 0;
+  for (std::size_t i = bytes.size(); i > 0; --i)
+    number = number << 8 | static_cast<unsigned char>(bytes[i - 1]);
+  return number;
+}
 
 Salvaged SalvageBag(const std::string& path, const std::string& into) {
   return Salvage(path, into).Run();

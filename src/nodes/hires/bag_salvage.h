@@ -1,9 +1,14 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <string>
+#include <string_view>
 
 namespace hires_ros {
+
+/// A number as bags have it, least significant byte first.  @pre at most 8 bytes
+std::uint64_t NumberIn(std::string_view bytes);
 
 /// What could be read of a bag from its front, without an index.
 struct Salvaged {
