@@ -17,6 +17,7 @@ constexpr double kLongestRamp = 0.15;   // [m] in which it steers from one arc i
 constexpr double kLookedAhead = 0.5;    // [m] beyond where it could stop
 constexpr double kOutlineStep = 0.025;  // [m] between two outlines that are looked at
 constexpr double kAngularStep = 0.1;    // [rad]
+constexpr double kTurningLeft = 1.1;    // as fast as it may turn so much more sharply than its way
 
 }  // namespace
 
@@ -62,16 +63,17 @@ double CarFollower::Deceleration() const {
   return std::min(params_.deceleration, limits_.max_linear_acceleration);
 }
 
-/// How fast it may pass each pose: on arcs within the limit of turning, and where the arc changes
-/// so slowly that steering within the limit of angular acceleration takes a short way only; before
-/// these no faster than it can brake.
+/// How fast it may pass each pose: on arcs so much within the limit of turning that errors can be
+/// taken back on either side, and where the arc changes so slowly that steering within the limit
+/// of angular acceleration takes a short way only; before these no faster than it can brake.
 void CarFollower::PlanSpeeds() {
   fastest_.clear();
   for (const CarPose& pose : path_) {
     const double turning = std::abs(pose.curvature);
-    fastest_.push_back(turning > 0.0 ? std::min(limits_.max_linear_velocity,
-                                                limits_.max_angular_velocity / turning)
-                                     : limits_.max_linear_velocity);
+    fastest_.push_back(turning > 0.0
+                           ? std::min(limits_.max_linear_velocity,
+                                      limits_.max_angular_velocity / (kTurningLeft * turning))
+                           : limits_.max_linear_velocity);
   }
   for (std::size_t next = path_.size(); next-- > 1;) {
     const std::size_t i = next - 1;

@@ -123,17 +123,15 @@ inline double PlaceMarginOf(const robot::Robot& robot) {
 }
 
 /// The way as it is planned: the straight one where nothing is near it, else A*'s. Of a car: its
-/// arcs, with a margin [m]. Empty: there is none.
-inline std::vector<geometry::Pose2> PlannedWay(const DrivingContext& context, const Leg& leg,
-                                               double margin_of_car = 0.0) {
+/// arcs. Empty: there is none.
+inline std::vector<geometry::Pose2> PlannedWay(const DrivingContext& context, const Leg& leg) {
   const navigation::Costmap& costmap = *context.costmap;
   const robot::BaseControllerParams& base = context.robot->profile.base_controller;
   std::vector<geometry::Pose2> way;
   if (base.drive == robot::Drive::kCarLike) {
-    for (const auto& pose :
-         navigation::PlanCarPath(costmap, geometry::Padded(context.footprint, margin_of_car),
-                                 leg.X_MStart, leg.X_MGoal, base.min_turning_radius)
-             .path)
+    for (const auto& pose : navigation::PlanCarPath(costmap, context.footprint, leg.X_MStart,
+                                                    leg.X_MGoal, base.min_turning_radius)
+                                .path)
       way.push_back(pose.X_MB);
     return way;
   }

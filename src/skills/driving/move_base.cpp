@@ -7,6 +7,7 @@
 #include "hires/geometry/angles.h"
 #include "hires/robot/echoes.h"
 #include "hires/robot/link_bounds.h"
+#include "skills/driving/base_limits.h"
 #include "skills/driving/by_height.h"
 #include "skills/driving/way_blocked.h"
 #include "skills/posture_skills.h"
@@ -50,7 +51,7 @@ std::optional<navigation::CarFollower> MakeFollower(const DrivingContext& contex
   params.yaw_goal_tolerance = local.yaw_goal_tolerance;
   params.stopped_linear_velocity = local.stopped_linear_velocity;
   navigation::CarFollower follower(params, footprint, base.min_turning_radius);
-  follower.SetMotionSet(motion_set);
+  follower.SetMotionSet(WithinLimits(motion_set, base.limits));
   return follower;
 }
 

@@ -8,6 +8,7 @@
 #include "hires/navigation/slow_before.h"
 #include "hires/robot/echoes.h"
 #include "hires/skills/move_base.h"
+#include "skills/driving/base_limits.h"
 
 namespace hires::skills {
 namespace {
@@ -58,7 +59,7 @@ MoveBaseBlind::MoveBaseBlind(const MoveBaseBlindParams& params, const Pose2& X_M
   following.deceleration = params.deceleration;
   following.reaction_time = params.reaction_time;
   car_.emplace(following, geometry::Polygon{}, min_turning_radius_);
-  car_->SetMotionSet(Slowed(motion_set, params));
+  car_->SetMotionSet(WithinLimits(Slowed(motion_set, params), base.limits));
 }
 
 double MoveBaseBlind::Deceleration() const {
