@@ -179,10 +179,10 @@ TEST(WholeDrivesTest, SlowMotionSetsArriveToo) {
   }
 }
 
-/// One drive in 200 of a skid-steered base comes to a door at a slant and turns about before it,
-/// the long way: 29.2 s in place of 25.8 s.
+/// Two drives in 200 of a skid-steered base come to a door at a slant and turn about before it, the
+/// long way: 26.7 s in place of 25.8 s, 48.8 s in place of 33.1 s.
 TEST(WholeDrivesTest, InAHouseEachArrives) {
-  ExpectArrivals(test_support::House(), true, {12.0, 8.0}, 1);
+  ExpectArrivals(test_support::House(), true, {12.0, 8.0}, 2);
 }
 
 /// Bases on two driven wheels that are nearly as wide as the doors of 0.9 m. What they touch, with
