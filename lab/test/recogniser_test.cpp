@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <map>
 #include <numeric>
@@ -322,6 +323,56 @@ TEST_F(RecogniserTest, WhereNothingIsNothingIsSeen) {
                   .detections[0]
                   .label == kUnknownLabel)
       << "who knows nothing recognises nothing";
+}
+
+/// A wall across the view with boxes before it, depths in eighths of a pixel of disparity.
+PointCloud WallWithBoxes(double distance, base::Rng* rng) {
+  constexpr double kFocal = 525.0, kBaseline = 0.075;  // [pixels], [m]
+  struct Front {
+    double x, y, width, height, z;  // [m]
+  };
+  std::vector<Front> fronts;
+  for (int i = 0; i < 40; ++i) {
+    fronts.push_back({rng->Uniform(-0.5, 0.5) * distance, rng->Uniform(-0.4, 0.4) * distance,
+                      rng->Uniform(0.1, 0.4), rng->Uniform(0.1, 0.4),
+                      distance - rng->Uniform(0.1, 0.45)});
+  }
+  PointCloud cloud;
+  cloud.width = 640;
+  cloud.height = 480;
+  for (int row = 0; row < cloud.height; ++row) {
+    for (int column = 0; column < cloud.width; ++column) {
+      const double u = (column - 319.5) / kFocal, v = (row - 239.5) / kFocal;
+      double z = distance;
+      for (const Front& front : fronts) {
+        const bool is_met = std::abs(u * front.z - front.x) < 0.5 * front.width &&
+                            std::abs(v * front.z - front.y) < 0.5 * front.height;
+        if (is_met) z = std::min(z, front.z);
+      }
+      const double disparity = kFocal * kBaseline / z + rng->Normal(0.0, 0.06);
+      const double measured = kFocal * kBaseline / (std::round(8.0 * disparity) / 8.0);
+      cloud.points.push_back(Vector3d(u * measured, v * measured, measured).cast<float>());
+    }
+  }
+  return cloud;
+}
+
+TEST_F(RecogniserTest, FarAwayNothingIsNamed) {
+  int num_things = 0;
+  for (int i = 0; i < hires::test_support::Rounds(4); ++i) {
+    base::Rng rng = base::Rng(11).Fork(i);
+    const PointCloud cloud = WallWithBoxes(rng.Uniform(4.1, 6.0), &rng);
+    const Recognition seen = recogniser_.Recognise(cloud, std::nullopt, base::Rng(1));
+    for (const Detection& thing : seen.detections) {
+      EXPECT_EQ(thing.label, kUnknownLabel);
+      EXPECT_TRUE(thing.is_too_far);
+      EXPECT_TRUE(thing.alternatives.empty());
+      ++num_things;
+    }
+  }
+  EXPECT_GT(num_things, 10);
+  for (const Detection& thing : Recognise(tables_.Make(1).cloud, tables_.Make(1).stand).detections)
+    EXPECT_FALSE(thing.is_too_far);
 }
 
 TEST_F(RecogniserTest, TheSameBitsEachTime) {

@@ -47,6 +47,8 @@ struct Detection {
   /// would be (RecogniserParams::min_quality is wanted); empty: it is like none.
   std::string nearest_label{};
   double nearest_quality{0.0};
+  /// Depths are so uncertain there that they tell no kinds apart: none is named.
+  bool is_too_far{false};
 };
 
 /// What a recogniser says of one picture.

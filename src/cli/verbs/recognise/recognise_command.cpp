@@ -68,6 +68,7 @@ ordered_json ThingToJson(const Detection& thing, int label, bool is_segmenting) 
   if (!thing.nearest_label.empty()) {
     json["nearest"] = {{"kind", thing.nearest_label}, {"quality", thing.nearest_quality}};
   }
+  json["too_far"] = thing.is_too_far;
   return json;
 }
 
@@ -93,6 +94,7 @@ std::string KindText(const Detection& thing) {
     return fmt::format("{} (nearest: {}, quality {:.2f})", thing.label, thing.nearest_label,
                        thing.nearest_quality);
   }
+  if (thing.is_too_far) return thing.label + " (too far away to be named)";
   if (thing.label == perception::kUnknownLabel) return thing.label;
   std::string text = fmt::format("{} {:.2f}", thing.label, thing.confidence);
   constexpr std::size_t kMost = 2;
