@@ -12,9 +12,9 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double kFarthest = 60.0;  // [m]
-constexpr double kLift = 1e-4;      // [m] off a surface, so that a ray does not meet it again
-constexpr double kTile = 0.5;       // [m]
+constexpr double kLongestShadow = 60.0;  // [m]
+constexpr double kLift = 1e-4;           // [m] off a surface, so that a ray does not meet it again
+constexpr double kTile = 0.5;            // [m]
 constexpr double kGlassShare = 0.22;
 constexpr int kMostPanes = 6;
 constexpr int kNothing = -2, kFloor = -1;  // beside the owners of shapes
@@ -27,7 +27,7 @@ Vector3d ToVector(const Colour& colour) {
 /// What a ray meets first, the floor included.
 struct Surface {
   int owner{kNothing};
-  double distance{kFarthest};
+  double distance{0.0};
   Vector3d n_M{Vector3d::UnitZ()};
 };
 
@@ -73,8 +73,10 @@ class Painter {
  private:
   Surface First(const Vector3d& from_M, const Vector3d& direction) const {
     Surface surface;
-    if (direction.z() < 0.0 && from_M.z() > 0.0 && -from_M.z() / direction.z() < kFarthest) {
-      surface = {kFloor, -from_M.z() / direction.z(), Vector3d::UnitZ()};
+    surface.distance = lighting_.farthest;
+    const double to_floor = -from_M.z() / direction.z();
+    if (direction.z() < 0.0 && from_M.z() > 0.0 && to_floor < lighting_.farthest) {
+      surface = {kFloor, to_floor, Vector3d::UnitZ()};
     }
     const auto hit = rays_.FirstHit(from_M, direction, surface.distance);
     if (hit) surface = {hit->owner, hit->distance, hit->n_M};
@@ -103,7 +105,7 @@ class Painter {
   bool IsShaded(const Vector3d& from_M) const {
     Vector3d from = from_M;
     for (int pane = 0; pane <= kMostPanes; ++pane) {
-      const auto hit = rays_.FirstHit(from, to_sun_, kFarthest);
+      const auto hit = rays_.FirstHit(from, to_sun_, kLongestShadow);
       if (!hit) return false;
       if (!bodies_[hit->owner]->is_glass) return true;
       from += (hit->distance + kLift) * to_sun_;

@@ -24,6 +24,7 @@ struct Lighting {
   double sky{0.12};                           ///< ... that falls from above ...
   double ambient{0.40};                       ///< ... and that is everywhere
   Colour background{214, 222, 232};
+  double farthest{60.0};  ///< [m] from the camera on there is background alone
 };
 
 /// Draws bodies by casting rays (Embree): Lambert's shading with hard shadows on a floor z = 0 of

@@ -14,6 +14,7 @@
 #include "hires/perception/picture_scene.h"
 #include "hires/robot/posture.h"
 #include "reports/film/film_cameras.h"
+#include "reports/film/film_colours.h"
 #include "reports/film/picture_files.h"
 #include "reports/film/picture_text.h"
 
@@ -27,10 +28,6 @@ using perception::Colour;
 using perception::PaintedBody;
 using perception::Picture;
 
-constexpr Colour kPaper{250, 250, 248}, kInk{24, 28, 36}, kAlarm{196, 24, 24}, kWell{16, 120, 40};
-constexpr Colour kFurniture{206, 178, 136}, kWall{150, 158, 170}, kRobot{112, 136, 172};
-constexpr Colour kTray{70, 84, 108}, kLoad{226, 84, 28}, kOther{150, 96, 160};
-constexpr Colour kTrace{40, 92, 190}, kGoal{96, 176, 104};
 constexpr double kGlassHeight = 1.7;  // [m]
 constexpr double kEventShown = 1.5;   // [s]
 constexpr double kTraceStep = 0.08;   // [m]

@@ -114,6 +114,22 @@ int CheckAll(const DoctorBackends& backends, bool with_physics, const ReportOpti
   return findings.passed ? kExitRecommended : kExitBadInput;
 }
 
+int CheckTheFiles(const DoctorOptions& options, const DoctorBackends& backends) {
+  const ReportOptions& report = options.robot.report;
+  CheckReport(report);
+  Findings findings;
+  ExamineFiles(options.files, backends.package_folder,
+               [&](const Finding& finding) { findings.Add(finding); });
+  ReportOrigin origin;
+  origin.verb = "doctor";
+  if (findings.passed) {  // else one of them may not be there
+    origin.inputs = {
+        {"world", options.files.world}, {"map", options.files.map}, {"robot", options.files.robot}};
+  }
+  WriteReport(report, origin, {{"ok", findings.passed}, {"findings", findings.list}});
+  return findings.passed ? kExitRecommended : kExitBadInput;
+}
+
 }  // namespace
 
 void AddDoctorVerb(CLI::App* app, DoctorOptions* o) {
@@ -121,7 +137,21 @@ void AddDoctorVerb(CLI::App* app, DoctorOptions* o) {
       "doctor",
       "check this machine and compare the physics with closed forms, or --robot: a running robot");
   CLI::Option* robot =
-      o->verb->add_flag("--robot", o->is_robot, "look at the robot of ROS_MASTER_URI instead");
+      o->verb
+          ->add_option(
+              "--robot", o->files.robot,
+              "look at the robot of ROS_MASTER_URI instead; with --world or --map: profile "
+              "(.yaml) or URDF")
+          ->expected(0, 1);
+  o->verb->add_option(
+      "--world", o->files.world,
+      "read this world, with --robot FILE, and say all that is assumed, left out or "
+      "suspected");
+  o->verb->add_option("--map", o->files.map, "likewise of a map_server map");
+  o->verb
+      ->add_option("--area", o->files.areas, "with --world or --map: one more area, NAME:x,y,yaw")
+      ->allow_extra_args(false);
+  o->verb->add_option("--png", o->files.png, "with --world or --map: picture from above");
   o->verb
       ->add_flag("--no-physics", o->is_without_physics,
                  "look at this machine alone: the comparison takes 11 s of a processor")
@@ -142,7 +172,16 @@ void AddDoctorVerb(CLI::App* app, DoctorOptions* o) {
 }
 
 int RunDoctorVerb(const DoctorOptions& options, const DoctorBackends& backends) {
-  if (!options.is_robot) {
+  if (options.files.is_asked()) return CheckTheFiles(options, backends);
+  for (const auto& [option, value] :
+       {std::pair("--robot " + options.files.robot, !options.files.robot.empty()),
+        std::pair(std::string("--area"), !options.files.areas.empty()),
+        std::pair(std::string("--png"), !options.files.png.empty())}) {
+    if (value)
+      throw base::ConfigError(option + ": is looked at in a world; add --world FILE or --map FILE");
+  }
+  const bool is_robot = options.verb != nullptr && options.verb->count("--robot") > 0;
+  if (!is_robot) {
     return CheckAll(backends, !options.is_without_physics, options.robot.report);
   }
   if (!backends.examine_robot) {

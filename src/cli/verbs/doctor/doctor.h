@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "cli/report_output.h"
+#include "cli/verbs/doctor/file_doctor.h"
 #include "cli/verbs/doctor/finding.h"
 
 namespace CLI {
@@ -38,9 +39,9 @@ struct DoctorBackends {
 
 /// What was typed behind `hires doctor`.
 struct DoctorOptions {
-  bool is_robot{false};
   bool is_without_physics{false};  ///< what the machine has is looked at alone
   RobotDoctorOptions robot;
+  FileDoctorOptions files;
   CLI::App* verb{nullptr};
 };
 
@@ -49,9 +50,10 @@ void AddDoctorVerb(CLI::App* app, DoctorOptions* options);
 
 /// `hires doctor`: looks at the package's files and the machine, then compares the physics with
 /// closed forms. Prints one line per check with what to do where it failed. With --robot it looks
-/// at a running robot instead.
+/// at a running robot instead; with --world or --map at these files, and --robot names one.
 /// @return 0 if all passed, else kExitBadInput.
-/// @throws base::ConfigError for --robot where there are no ROS nodes to ask.
+/// @throws base::ConfigError for --robot where there are no ROS nodes to ask, and for a file of a
+/// robot without a world.
 int RunDoctorVerb(const DoctorOptions& options, const DoctorBackends& backends);
 
 }  // namespace hires::cli
