@@ -11,7 +11,6 @@
 #include <cstdint>
 #include <filesystem>
 #include <fstream>
-#include <map>
 #include <new>
 #include <set>
 #include <stdexcept>
@@ -117,7 +116,7 @@ class BagCheck {
   }
 
  private:
-  using Fields = std::map<std::string, std::string>;
+  using Fields = BagFields;
   static constexpr std::uint64_t kMostHeader = 1 << 20;  // [bytes]
   static constexpr std::uint64_t kMostChunk = 1 << 29;   // [bytes]
   static constexpr std::size_t kIndexEntry = 12;         // [bytes]
@@ -135,19 +134,10 @@ class BagCheck {
     return bytes;
   }
 
-  /// Of `size` bytes: a length each, then name=value.
-  Fields FieldsOf(const std::string& bytes, std::size_t at, std::size_t size) const {
-    Fields fields;
-    for (const std::size_t end = at + size; at < end;) {
-      if (end - at < 4) Fail("a header ends too early");
-      const std::size_t length = NumberAt(bytes, at, 4);
-      at += 4;
-      const std::size_t equals = bytes.find('=', at);
-      if (length > end - at || equals >= at + length) Fail("a header's field is no field");
-      fields[bytes.substr(at, equals - at)] = bytes.substr(equals + 1, at + length - equals - 1);
-      at += length;
-    }
-    return fields;
+  Fields FieldsAt(const std::string& bytes, std::size_t at, std::size_t size) const {
+    const auto fields = FieldsOf(std::string_view(bytes).substr(at, size));
+    if (!fields) Fail("a header's field is no field");
+    return *fields;
   }
 
   std::uint64_t NumberOf(const Fields& fields, const std::string& name, std::size_t size) const {
@@ -166,7 +156,7 @@ class BagCheck {
   std::uint64_t TakeRecord(std::uint64_t at) {
     const std::uint64_t header_size = NumberAt(Read(at, 4), 0, 4);
     if (header_size > kMostHeader) Fail("a header claims to be larger than 1 MB");
-    const Fields fields = FieldsOf(Read(at + 4, header_size), 0, header_size);
+    const Fields fields = FieldsAt(Read(at + 4, header_size), 0, header_size);
     const std::uint64_t data_at = at + 8 + header_size;
     const bool is_index = NumberOf(fields, "op", 1) == kIndex;
     // Recorders of 2010 wrote another length than that of the entries that they count.
@@ -216,7 +206,7 @@ class BagCheck {
     // Where a connection's record comes first, the message follows.
     for (Fields fields; fields.empty() || NumberOf(fields, "op", 1) != kMessage;) {
       const std::size_t header_size = size_at(at);
-      fields = FieldsOf(chunk_, at + 4, header_size);
+      fields = FieldsAt(chunk_, at + 4, header_size);
       at += 4 + header_size;
       at += 4 + size_at(at);
     }

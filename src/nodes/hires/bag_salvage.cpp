@@ -7,8 +7,6 @@
 #include <boost/make_shared.hpp>
 #include <cstdint>
 #include <fstream>
-#include <map>
-#include <optional>
 #include <string_view>
 #include <vector>
 
@@ -18,7 +16,7 @@ namespace {
 constexpr std::uint64_t kMostRecord = 1 << 29;  // [bytes]
 enum Op { kDefinition = 1, kMessage = 2, kChunk = 5, kConnection = 7 };
 
-using Fields = std::map<std::string, std::string>;
+using Fields = BagFields;
 
 /// Takes lengths and what is as long from the front of some bytes.
 class Cursor {
@@ -39,18 +37,6 @@ class Cursor {
  private:
   std::string_view left_;
 };
-
-/// A length each, then name=value; nothing where that does not hold.
-std::optional<Fields> FieldsOf(std::string_view header) {
-  Fields fields;
-  for (Cursor cursor(header); !cursor.is_empty();) {
-    const auto field = cursor.TakeSized();
-    const std::size_t equals = field ? field->find('=') : std::string_view::npos;
-    if (equals == std::string_view::npos) return std::nullopt;
-    fields[std::string(field->substr(0, equals))] = field->substr(equals + 1);
-  }
-  return fields;
-}
 
 struct Record {
   Fields fields;
@@ -193,6 +179,17 @@ class Salvage {
 };
 
 }  // namespace
+
+std::optional<BagFields> FieldsOf(std::string_view header) {
+  BagFields fields;
+  for (Cursor cursor(header); !cursor.is_empty();) {
+    const auto field = cursor.TakeSized();
+    const std::size_t equals = field ? field->find('=') : std::string_view::npos;
+    if (equals == std::string_view::npos) return std::nullopt;
+    fields[std::string(field->substr(0, equals))] = field->substr(equals + 1);
+  }
+  return fields;
+}
 
 std::uint64_t NumberIn(std::string_view bytes) {
   std::uint64_t number = 0;

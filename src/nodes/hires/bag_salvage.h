@@ -2,6 +2,8 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <map>
+#include <optional>
 #include <string>
 #include <string_view>
 
@@ -9,6 +11,12 @@ namespace hires_ros {
 
 /// A number as bags have it, least significant byte first.  @pre at most 8 bytes
 std::uint64_t NumberIn(std::string_view bytes);
+
+/// What a record's header says, by name.
+using BagFields = std::map<std::string, std::string>;
+
+/// Of a header: a length each, then name=value; nothing where that does not hold.
+std::optional<BagFields> FieldsOf(std::string_view header);
 
 /// What could be read of a bag from its front, without an index.
 struct Salvaged {
