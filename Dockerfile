@@ -2,7 +2,7 @@
 # `docker run --rm hires hires --help` and so on run anything else.
 FROM debian:12 AS build
 COPY . /hires
-RUN /hires/scripts/setup build run package \
+RUN /hires/scripts/setup build perception run package \
     && mkdir /packages && HIRES_BUILD=/build /hires/scripts/package /packages
 
 FROM debian:12

@@ -3,7 +3,8 @@
 
 # What such a library takes with it of hires, each before what it needs itself. Its bytes are then all that
 # an action is, and those who imagine can compare them.
-set(HIRES_ACTION_LAYERS skills manipulation perception navigation navigation_guard world robot actions geometry base)
+set(HIRES_ACTION_LAYERS skills manipulation perception perception_no_pcl navigation navigation_guard world robot actions
+  geometry base)
 
 # hires_action_library(<target> a.cpp ...): actions that programs load when they are told to, see
 # hires/skills/action_library.h. What else they need is linked by target_link_libraries. In the tree of
@@ -11,7 +12,7 @@ set(HIRES_ACTION_LAYERS skills manipulation perception navigation navigation_gua
 function(hires_action_library target)
   if(HIRES_OWN_BUILD)
     add_library(hires_${target} MODULE ${ARGN})
-    set_target_properties(hires_${target} PROPERTIES OUTPUT_NAME ${target})
+    set_target_properties(hires_${target} PROPERTIES OUTPUT_NAME ${target} HIRES_WITHOUT_PCL ON)
     target_compile_options(hires_${target} PRIVATE ${HIRES_WARNINGS})
     target_link_libraries(hires_${target} PRIVATE hires_skills)
     if(HIRES_ROS)  # apart from a library of the same name of another package

@@ -78,9 +78,12 @@ std::vector<SceneName> ScenesIn(const std::string& folder) {
 }
 
 std::string KindOf(const SceneName& scene) {
-  if (scene.name.rfind("learn", 0) == 0)
-    for (const auto& kind : test_support::kTabletopKinds)
-      if (scene.number >= kind.first && scene.number <= kind.last) return kind.name;
+  const auto is_called = [&](const char* name) { return scene.name.rfind(name, 0) == 0; };
+  std::vector<test_support::TabletopKind> kinds;
+  if (is_called("learn")) kinds = test_support::kTabletopKinds;
+  if (is_called("test")) kinds = test_support::kTabletopTestKinds;
+  for (const auto& kind : kinds)
+    if (scene.number >= kind.first && scene.number <= kind.last) return kind.name;
   return "scenes";
 }
 
@@ -89,11 +92,17 @@ nlohmann::json Try(const Method& method, const test_support::TabletopScene& scen
   const Segmentation out = method.segment(scene.cloud);
   const double seconds = base::ThreadCpuSeconds() - begin;
   const auto score = test_support::ScoreOf(scene.truth, out.labels);
-  nlohmann::json row{{"method", method.name},    {"points", score.num_points},
-                     {"overlap", score.overlap}, {"inside", score.inside},
-                     {"outside", score.outside}, {"seconds", seconds},
-                     {"table_share", nullptr},   {"is_table_found", nullptr}};
+  nlohmann::json row{
+      {"method", method.name},  {"points", score.num_points}, {"overlap", score.overlap},
+      {"inside", score.inside}, {"outside", score.outside},   {"seconds", seconds},
+      {"table_share", nullptr}, {"is_table_found", nullptr},  {"of_none", nullptr}};
+  int of_things = 0, of_none = 0;
+  for (std::size_t i = 0; i < out.labels.size(); ++i) {
+    if (out.labels[i] < kLabelFirstThing || !IsMeasured(scene.cloud.points[i])) continue;
+    ++(scene.truth[i] < 20 ? of_none : of_things);
+  }
   if (method.finds_tables) {
+    row["of_none"] = static_cast<double>(of_none) / std::max(1, of_none + of_things);
     const double share =
         out.table ? test_support::ShareOfTableNear(*out.table, test_support::kTableTolerance,
                                                    scene.cloud, scene.truth)

@@ -122,7 +122,7 @@ class CompareTest(unittest.TestCase):
                 done = subprocess.run([sys.executable, "-B", SCRIPT, folder, *more], stdout=subprocess.PIPE,
                                       stderr=subprocess.STDOUT, text=True, check=False)
                 self.assertEqual(done.returncode, code)
-                self.assertIn("scripts/setup peers", done.stdout)
+                self.assertIn("scripts/setup", done.stdout)
 
 
 if __name__ == "__main__":

@@ -21,9 +21,8 @@ class LearningScenesRegressionTest : public testing::TestWithParam<int> {};
 // its parameters): Euclidean clusters 0.978, 0.511, 0.808, 0.840; LCCP 0.985, 0.962, 0.883, 0.835.
 // The bound is the better of the two.
 // SegmentationParams were chosen on these very 45 scenes, PCL's but for one were not. So this shows
-// when segmentation becomes worse than it was here. It does not show that it is better than its
-// peers, nor how well it does on other scenes, other things or with another camera: no scenes that
-// nobody has looked at are at hand.
+// when segmentation becomes worse than it was here. How well it does on scenes on which nothing was
+// chosen compare_with_pcl tells.
 TEST_P(LearningScenesRegressionTest, OverlapStaysAboveThatOfPeersOnTheScenesOfOurParameters) {
   const std::string folder = std::string(HIRES_SHARED_DATA) + "/tabletop/learn";
   if (!std::filesystem::exists(folder)) GTEST_SKIP() << folder << " is not there";

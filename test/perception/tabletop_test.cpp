@@ -1,14 +1,19 @@
 #include <gmock/gmock.h>
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 #include <map>
 #include <set>
+#include <string>
+#include <vector>
 
 #include "hires/perception/depth_sensor.h"
 #include "hires/perception/line_of_sight.h"
 #include "hires/perception/segmentation.h"
-#include "perception/tabletop/convex_parts.h"
+#include "perception/patches/convex_patches.h"
 #include "perception/tabletop/surfels.h"
+#include "support/rounds.h"
 
 namespace hires::perception::tabletop_test {
 namespace {
@@ -288,9 +293,9 @@ TEST(FindTableTest, TheFloorIsNoTableForALeaningPlaneEither) {
   }
 }
 
-/// Surfels on a grid of 5 mm whose height is a function of x, seen from above.
+/// Points every 2 mm whose height is a function of x, seen from above.
 template <typename Height>
-SurfelCloud Profile(Height height, double noise = 0.0) {
+PointCloud Profile(Height height, double noise = 0.0) {
   PointCloud cloud;
   base::Rng rng(1);
   for (double x = -0.1; x < 0.1; x += 0.002) {
@@ -299,26 +304,38 @@ SurfelCloud Profile(Height height, double noise = 0.0) {
           Vector3d(x, y, 1.0 - height(x) + rng.Normal(0.0, noise)).cast<float>());
     }
   }
+  cloud.width = static_cast<int>(cloud.points.size());
+  return cloud;
+}
+
+std::vector<int> PatchesOf(const PointCloud& cloud, const std::vector<int>& indices) {
+  const ConvexPartParams params;
+  return FindConvexPatches(
+      cloud.points, cloud.width, cloud.height, indices,
+      {params.voxel, params.seed, params.max_concavity, params.max_step, params.min_supervoxels});
+}
+
+/// Of more than a hundred points.
+int NumPatches(const PointCloud& cloud) {
   std::vector<int> all(cloud.points.size());
   for (std::size_t i = 0; i < all.size(); ++i) all[i] = static_cast<int>(i);
-  return MakeSurfels(cloud, all, {});
+  std::map<int, int> sizes;
+  for (const int patch : PatchesOf(cloud, all)) ++sizes[patch];
+  sizes.erase(0);
+  return static_cast<int>(
+      std::count_if(sizes.begin(), sizes.end(), [](const auto& one) { return one.second > 100; }));
 }
 
-int NumParts(const SurfelCloud& surfels) {
-  const std::vector<int> part = FindConvexParts(surfels, {});
-  return static_cast<int>(std::set<int>(part.begin(), part.end()).size());
+TEST(FindConvexPatchesTest, OnlyAConcaveEdgeDivides) {
+  EXPECT_EQ(NumPatches(Profile([](double) { return 0.0; }, 0.001)), 1) << "a plane";
+  EXPECT_EQ(NumPatches(Profile([](double x) { return -std::abs(x); }, 0.001)), 1) << "a roof";
+  EXPECT_EQ(NumPatches(Profile([](double x) { return std::abs(x); }, 0.001)), 2) << "a valley";
 }
 
-TEST(ConvexPartsTest, OnlyAConcaveEdgeDivides) {
-  EXPECT_EQ(NumParts(Profile([](double) { return 0.0; }, 0.001)), 1) << "a plane";
-  EXPECT_EQ(NumParts(Profile([](double x) { return -std::abs(x); }, 0.001)), 1) << "a roof";
-  EXPECT_EQ(NumParts(Profile([](double x) { return std::abs(x); }, 0.001)), 2) << "a valley";
-  EXPECT_EQ(NumParts(Profile([](double x) { return 0.13 - std::sqrt(0.13 * 0.13 - x * x); })), 1)
-      << "a bowl bends slowly";
-}
-
-TEST(ConvexPartsTest, NothingMakesNoParts) {
-  EXPECT_TRUE(FindConvexParts(MakeSurfels({}, {}, {}), {}).empty());
+TEST(FindConvexPatchesTest, NothingMakesNoPatches) {
+  EXPECT_TRUE(PatchesOf({}, {}).empty());
+  const PointCloud cloud = Profile([](double) { return 0.0; });
+  EXPECT_EQ(PatchesOf(cloud, {}), std::vector<int>(cloud.points.size(), 0));
 }
 
 TEST(SegmentTabletopTest, ThingsAreToldFromTheTableAndFromEachOther) {
@@ -361,6 +378,82 @@ TEST(SegmentTabletopTest, TwoAlikeWithAGapBetweenThemAreTwo) {
   EXPECT_EQ(Segment(scene.Seen()).num_things, 2) << "their faces go on, but one looks between them";
 }
 
+/// Whether nothing else has a label that most of the points about these places have.
+void ExpectApart(const PointCloud& cloud, const Segmentation& out, const std::vector<Vector3d>& p_T,
+                 const std::string& what) {
+  std::set<int> labels;
+  for (const Vector3d& p : p_T) {
+    const int label = LabelAround(cloud, out, p);
+    EXPECT_GE(label, kLabelFirstThing) << what << ": a thing is lost at " << p.transpose();
+    EXPECT_TRUE(labels.insert(label).second) << what << ": a thing is joined at " << p.transpose();
+  }
+}
+
+// Their fronts are 5 cm behind each other by turns, and they nearly touch.
+TEST(SegmentTabletopTest, BoxesOfARowAreSeveral) {
+  for (int seed = 1; seed <= test_support::Rounds(16); ++seed) {
+    base::Rng rng(seed);
+    TableScene scene;
+    std::vector<Vector3d> tops;
+    double y = -0.42;
+    for (int i = 0; y < 0.3; ++i) {
+      const double width = rng.Uniform(0.13, 0.18), height = rng.Uniform(0.11, 0.15);
+      const double x = i % 2 == 0 ? 0.0 : 0.05;
+      y += width / 2.0;
+      scene.PutBox({0.12, width, height}, x, y);
+      tops.emplace_back(x, y, height);
+      y += width / 2.0 + rng.Uniform(0.006, 0.012);
+    }
+    const PointCloud cloud = scene.Seen(seed);
+    ExpectApart(cloud, Segment(cloud), tops, "seed " + std::to_string(seed));
+  }
+}
+
+// No gap shows the table behind a row that crosses all of it.
+TEST(SegmentTabletopTest, WhatStandsBehindWhereTheSeenTableEndsIsNotLost) {
+  for (int seed = 1; seed <= test_support::Rounds(16); ++seed) {
+    base::Rng rng(seed);
+    TableScene scene;
+    for (int i = 0; i < 7; ++i) scene.PutBox({0.08, 0.19, 0.16}, 0.1, -0.57 + 0.19 * i);
+    std::vector<Vector3d> tops;
+    for (double y = -0.35; y < 0.4; y += rng.Uniform(0.2, 0.25)) {
+      const double height = rng.Uniform(0.2, 0.24);
+      scene.Put(geometry::Cylinder{rng.Uniform(0.04, 0.05), height}, {0.3, y, height / 2.0});
+      tops.emplace_back(0.3, y, height);
+    }
+    const PointCloud cloud = scene.Seen(seed, 1.6);
+    const Segmentation out = Segment(cloud);
+    ExpectApart(cloud, out, tops, "seed " + std::to_string(seed));
+    for (const Vector3d& p : tops) {
+      const int label = LabelAround(cloud, out, p);
+      if (label >= kLabelFirstThing) {
+        EXPECT_TRUE(out.may_be_beside.at(label - kLabelFirstThing));
+      }
+    }
+  }
+}
+
+TEST(SegmentTabletopTest, OneFarPointChangesNothing) {
+  for (int seed = 1; seed <= test_support::Rounds(16); ++seed) {
+    base::Rng rng(seed);
+    TableScene scene;
+    scene.PutBox({0.08, 0.08, 0.15}, 0.0, rng.Uniform(-0.3, -0.1))
+        .PutBox({0.1, 0.1, 0.05}, 0.0, 0.2);
+    PointCloud cloud = scene.Seen(seed);
+    const int stray = rng.Index(static_cast<int>(cloud.points.size()));
+    cloud.points[stray].setConstant(std::numeric_limits<float>::quiet_NaN());
+    const Segmentation without = Segment(cloud);
+    const double distance = std::pow(10.0, rng.Uniform(1.1, 4.0));
+    cloud.points[stray] =
+        (distance * Vector3d(rng.Uniform(-0.5, 0.5), rng.Uniform(-0.4, 0.4), 1.0)).cast<float>();
+    const Segmentation with = Segment(cloud);
+    ASSERT_TRUE(without.table && with.table) << seed;
+    EXPECT_EQ(with.labels, without.labels) << seed << ", " << distance;
+    EXPECT_EQ(with.table->offset, without.table->offset) << seed << ", " << distance;
+    EXPECT_EQ(with.table->outline, without.table->outline) << seed << ", " << distance;
+  }
+}
+
 /// A tub of 16 thin walls.
 void PutTub(TableScene* scene, double radius, double height) {
   constexpr int kWalls = 16;
@@ -400,10 +493,18 @@ TEST(SegmentTabletopTest, AnEmptyTableHasNoThings) {
   EXPECT_TRUE(nothing.labels.empty());
 }
 
+// The camera sees over the edge that it goes on below the table's plane.
 TEST(SegmentTabletopTest, WhatIsBesideTheTableIsNoThingOnIt) {
-  TableScene scene(0.4);
-  scene.PutBox({0.1, 0.1, 0.9}, 0.4, 0.0, -0.75);
-  EXPECT_EQ(Segment(scene.Seen()).num_things, 0);
+  for (int seed = 1; seed <= test_support::Rounds(16); ++seed) {
+    base::Rng rng(seed);
+    TableScene scene(0.4);
+    const Vector3d size(rng.Uniform(0.05, 0.25), rng.Uniform(0.08, 0.3),
+                        kTableHeight + rng.Uniform(0.05, 0.25));
+    const double gap = rng.Uniform(0.1, 0.2);  // from the table's edge
+    scene.PutBox(size, 0.2 + gap + size.x() / 2.0, rng.Uniform(-0.3, 0.3), -kTableHeight);
+    scene.PutBox({0.08, 0.08, 0.1}, 0.1, 0.0);
+    EXPECT_EQ(Segment(scene.Seen(seed)).num_things, 1) << seed;
+  }
 }
 
 // The cloud's order is not used: who drives with a camera that gives lists of points gets the same.

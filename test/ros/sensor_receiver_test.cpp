@@ -230,6 +230,7 @@ TEST(DetectionMessageTest, SurvivesBothWays) {
   detection.alternatives = {{"jug", 0.25}};
   detection.size = {0.1, 0.2, 0.3};
   detection.num_points = 77;
+  detection.may_be_beside = true;
   const auto back = FromMsg(ToMsg(detection));
   EXPECT_EQ(back.instance, detection.instance);
   EXPECT_EQ(back.label, "mug");
@@ -242,12 +243,14 @@ TEST(DetectionMessageTest, SurvivesBothWays) {
   EXPECT_EQ(back.alternatives[0].confidence, 0.25);
   EXPECT_EQ(back.size, detection.size);
   EXPECT_EQ(back.num_points, 77);
+  EXPECT_TRUE(back.may_be_beside);
 }
 
 TEST(DetectionMessageTest, WhatIsNotToldIsNotKnown) {
   const auto detection = FromMsg(hires::Detection());
   EXPECT_FALSE(detection.instance);
   EXPECT_EQ(detection.confidence, 1.0);
+  EXPECT_FALSE(detection.may_be_beside);
 }
 
 }  // namespace

@@ -666,6 +666,7 @@ class UnknownThingTest : public NamelessTest {
     Eigen::Vector3d size;
     std::string label = perception::kUnknownLabel;
     int num_points = 0;
+    bool may_be_beside = false;
   };
   void See(const std::vector<Seen>& things) {
     body_.time += 0.5;
@@ -677,6 +678,7 @@ class UnknownThingTest : public NamelessTest {
       detection.X_CO = X_CM * thing.X_MO;
       detection.size = thing.size;
       detection.num_points = thing.num_points;
+      detection.may_be_beside = thing.may_be_beside;
       detections.push_back(detection);
     }
     memory_.Look(body_, detections);
@@ -703,6 +705,22 @@ TEST_F(UnknownThingTest, AThingThatNoModelExplainsGetsNameAndBoxAfterSomeLooks) 
   EXPECT_THAT(Names(), ElementsAre("unknown1", "unknown2"));
   for (int i = 0; i < 3; ++i) See({{At(1.5, -0.3, 0.7), size_}});
   EXPECT_THAT(Names(), ElementsAre("unknown2")) << "it vanishes as others do";
+}
+
+// It would never be missed: no look covers where no table is.
+TEST_F(UnknownThingTest, WhatMayBeFurnitureBesideTheTableIsCountedAlone) {
+  const std::string unknown = perception::kUnknownLabel;
+  const Seen mug{At(1.5, -0.3, 0.7), {0.08, 0.08, 0.1}, "mug", 0, true};
+  for (int i = 0; i < 5; ++i) {
+    See({mug, {At(1.5, 0.1, 0.7), size_, unknown, 0, true}});
+    EXPECT_EQ(memory_.num_beside(), 2);
+  }
+  EXPECT_THAT(Names(), ElementsAre("mug1")) << "a model explains it";
+  for (int i = 0; i < 3; ++i) See({mug, {At(1.5, 0.1, 0.7), size_}});
+  EXPECT_EQ(memory_.num_beside(), 1);
+  EXPECT_THAT(Names(), ElementsAre("mug1", "unknown1")) << "a look from elsewhere shows the table";
+  for (int i = 0; i < 3; ++i) See({mug, {At(1.5, 0.12, 0.7), size_, unknown, 0, true}});
+  EXPECT_THAT(Names(), ElementsAre("mug1", "unknown1")) << "what is known is seen there, too";
 }
 
 TEST_F(UnknownThingTest, WhatIsExpectedThereIsNoNewThing) {

@@ -43,6 +43,7 @@ struct Detection {
   std::vector<LabelConfidence> alternatives{};    ///< what else it may be
   Eigen::Vector3d size{Eigen::Vector3d::Zero()};  ///< [m] of the box around it; 0: not told
   int num_points{0};                              ///< of the cloud that it was seen as
+  bool may_be_beside{false};  ///< the table, see Segmentation; false: it is on it, or not told
   /// Of what a recogniser calls unknown: the kind that it is most like, and how good the picture
   /// would be (RecogniserParams::min_quality is wanted); empty: it is like none.
   std::string nearest_label{};

@@ -18,11 +18,16 @@ struct Segmentation {
   std::optional<Table> table{};  ///< nothing: nothing is labelled
   std::vector<int> labels{};     ///< of each point of the cloud
   int num_things{0};
+  /// Of each thing: whether the seen table ends before it. Things hide what follows: the table may
+  /// go on there, and nothing that is seen speaks against it.
+  std::vector<bool> may_be_beside{};
+  int num_left_out{0};  ///< points clearly above the table, not far beside it, that are of no thing
 };
 
 /// Tells things on a table from it and from each other, without knowing them: what is above the
-/// plane is divided along concave edges (FindConvexParts) and joined where one thing is seen in two
-/// parts (JoinParts).
+/// plane is divided along concave edges (FindConvexPatches), what is seen to stand elsewhere is
+/// dropped (WithoutBeside), and parts are joined where one thing is seen in two (JoinParts). Points
+/// beyond 10 m count as not measured.
 /// @param stand  as FindTable takes it.
 Segmentation SegmentTabletop(const PointCloud& cloud, const std::optional<CameraStand>& stand,
                              const SegmentationParams& params, const base::Rng& rng);

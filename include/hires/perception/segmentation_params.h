@@ -13,11 +13,20 @@ struct SurfelParams {
 };
 
 struct ConvexPartParams {
-  /// Mean concavity of a border above which two regions stay apart: 0 is flat or convex, 0.5 is a
-  /// step of the normals that stands across `sharp`, 1 is the most.
-  double max_concavity{0.3};
-  double sharp{0.6};  ///< how far two normals lean towards each other, along the line between them
-  int min_points{100};  ///< of a part
+  double voxel{0.005};         ///< [m] 1 m away; it grows with the distance, as does noise
+  double seed{0.025};          ///< [m] between the middles of supervoxels, likewise
+  double max_concavity{0.21};  ///< [rad] by which two supervoxels may lean towards each other
+  double max_step{0.1};        ///< [voxels] between supervoxels that still hang together
+  int min_supervoxels{3};      ///< of a patch; smaller ones become their neighbour's
+  int min_points{100};         ///< of a part
+};
+
+/// Sines by which surfels at most `border_radius` apart turn towards each other.
+struct SmoothBorderParams {
+  double max_concavity{0.25};  ///< along a border; more is an edge
+  double share{0.8};           ///< of a border's pairs of surfels that are so
+  double min_bend{-0.01};      ///< mean within a part that is no more than flat, but for noise
+  int min_pairs{30};           ///< of surfels; shorter borders join nothing
 };
 
 struct PartJoiningParams {
@@ -30,21 +39,22 @@ struct PartJoiningParams {
   double min_flatness{0.8};      ///< of a floor's mean normal, upwards
   double face_tolerance{0.004};  ///< [m] of surfels to their face
   double same_face{0.008};       ///< [m] of surfels to a face that they continue
-  double min_same_face{0.5};     ///< of all surfels of either part, on faces of the other
+  double min_same_face{0.5};     ///< of one part's surfels, on faces of the other
   double min_gap{0.015};         ///< [m] between parts that something divides; nearer ones touch
-  double min_hidden{0.7};        ///< of the gap between two parts, behind something else
+  double min_hidden{0.8};        ///< of a face's gap between two parts, behind something else
 };
 
 struct SegmentationParams {
   TableParams table{};
   SurfelParams surfels{};
   ConvexPartParams parts{};
+  SmoothBorderParams smooth_borders{};
   PartJoiningParams joining{};
   double surface_tolerance{
       3.0};                ///< [DepthNoise] above the plane from which on a point is a thing's
   double max_below{0.03};  ///< [m] below the plane down to which a point is the table's
   double max_above{0.6};   ///< [m] above the plane; what is higher is no thing on it
-  double max_beside{0.1};  ///< [m] beside the table's outline, likewise
+  double max_beside{0.5};  ///< [m] beside the table's outline, likewise
 };
 
 }  // namespace hires::perception

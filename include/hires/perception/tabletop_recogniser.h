@@ -15,7 +15,8 @@ struct TabletopView {
   Sighting sighting{};    ///< in the cloud's frame
   int num_own_points{0};  ///< of the robot itself, which were cut out
   std::vector<int>
-      thing_of{};  ///< of each point, index of the detection it is part of; -1: of none
+      thing_of{};       ///< of each point, index of the detection it is part of; -1: of none
+  int num_left_out{0};  ///< points, see Segmentation
 };
 
 /// What was seen in a frame B, in another frame A.

@@ -89,9 +89,10 @@ struct TrayView {
 ///
 /// What no model explains, and is not where something is expected, is remembered by its box: its
 /// model says it (world::UnknownBoxModel), its name is unknown1, unknown2, ... It has no identity
-/// beyond its place; where something known turns out to be in its place, it was that. And where
-/// looks alone said of what kind a thing is, several in a row that show more of it, and find that
-/// no model explains it, know better: from afar a box may look like a book.
+/// beyond its place; where something known turns out to be in its place, it was that. Where the
+/// table may end before it, it may be furniture, which no look would ever miss: it is only counted.
+/// Where looks alone said of what kind a thing is, several in a row that show more of it, and find
+/// that no model explains it, know better: from afar a box may look like a book.
 ///
 /// A laser over the tray says where what stands there is, what is gone, and that something is there
 /// that nobody knows. It tells nothing of heights and leaning, nor who something is: none of its
@@ -146,6 +147,8 @@ class ObjectMemory {
   std::vector<std::string> Vanished() const;
   /// Things of the last look that may be either of several objects.
   int num_ambiguous() const { return num_ambiguous_; }
+  /// Things of the last look, of any kind, that may be beside the table (Detection::may_be_beside).
+  int num_beside() const { return num_beside_; }
   /// Things of the last look of which more looks must tell what they are: none of the known, and
   /// without a name yet, or ambiguous.
   int num_newcomers() const;
@@ -235,7 +238,7 @@ class ObjectMemory {
   };
   std::vector<NewOnTray> new_on_tray_;
   std::optional<TrayView> tray_;
-  int num_ambiguous_{0};
+  int num_ambiguous_{0}, num_beside_{0};
   std::map<std::string, Hand> hands_;  ///< by arm
 };
 

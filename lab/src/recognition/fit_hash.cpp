@@ -1,9 +1,9 @@
 #include <initializer_list>
 
 #include "hires/base/hash.h"
-#include "lab/src/recognition/detector_fit.h"
 #include "hires/perception/depth_sensor.h"
 #include "hires/world/world.h"
+#include "lab/src/recognition/detector_fit.h"
 
 namespace hires::lab {
 namespace {
@@ -50,8 +50,9 @@ void FitHash::Add(const perception::SegmentationParams& params) {
        max_height});
   const auto& [cell, many, max_cell, normal_radius, border_radius] = surfels;
   Add({cell, static_cast<double>(many), max_cell, normal_radius, border_radius});
-  const auto& [max_concavity, sharp, min_points] = parts;
-  Add({max_concavity, sharp, static_cast<double>(min_points)});
+  const auto& [voxel, seed, max_concavity, max_step, min_supervoxels, min_points] = parts;
+  Add({voxel, seed, max_concavity, max_step, static_cast<double>(min_supervoxels),
+       static_cast<double>(min_points)});
   const auto& [min_inward, rim_tolerance, min_same_width, max_rim_gap, min_inner_share, min_floor,
                min_flatness, face_tolerance, same_face, min_same_face, min_gap, min_hidden] =
       joining;

@@ -156,6 +156,7 @@ void TabletopRecogniserNode::Recognise(const hires::geometry::Pose3& X_BC) {
   std::optional<perception::Sighting> sighting;
   if (seen) sighting = seen->sighting;
   last_ = ToMsg(sighting, msg->header);
+  num_left_out_ = seen ? seen->num_left_out : 0;
   waits_for_.clear();
   refused_.clear();
   ++num_recognised_;
@@ -210,6 +211,10 @@ void TabletopRecogniserNode::Diagnose(diagnostic_updater::DiagnosticStatusWrappe
   status.add("points of the robot itself", num_own_points_);
   status.add("links that tf does not know", hires::base::Join(uncut_, ", "));
   status.add("things", last_.detections.size());
+  status.add("things that may be beside the table",
+             std::count_if(last_.detections.begin(), last_.detections.end(),
+                           [](const auto& one) { return one.may_be_beside; }));
+  status.add("points above the table of no thing", num_left_out_);
   status.add("time for a cloud [s]", seconds_);
   status.add("kinds", params_.recogniser.catalogue.size());
 }

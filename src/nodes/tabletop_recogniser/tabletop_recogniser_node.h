@@ -55,6 +55,7 @@ class TabletopRecogniserNode {
   long num_clouds_{0}, num_recognised_{0}, num_replaced_{0};
   std::array<long, kNumFaults> num_refused_{};               // by fault
   int num_own_points_{0}, num_points_{0}, num_measured_{0};  // of the last cloud
+  int num_left_out_{0};                                      // likewise, above the table
   double seconds_{0.0};                                      // [s] that it took
   hires::base::TopicWarnings warnings_;
 

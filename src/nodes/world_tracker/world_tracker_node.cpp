@@ -212,6 +212,7 @@ void WorldTrackerNode::Diagnose(diagnostic_updater::DiagnosticStatusWrapper& sta
   }
   status.add("objects vanished", sensors_.objects()->memory().Vanished().size());
   status.add("things ambiguous in the last look", sensors_.objects()->memory().num_ambiguous());
+  status.add("things that may be beside the table", sensors_.objects()->memory().num_beside());
   status.add("head looks at", tracker_.sweep().target());
   status.add("fluents written", writer_.num_written());
   status.add("failed writes", writer_.num_failures());

@@ -190,8 +190,11 @@ Recognition Recogniser::Impl::Named(const PointCloud& cloud, Segmentation segmen
   if (!out.segmentation.table || !picture) return out;
   const LabelledPicture seen{cloud, *picture, out.segmentation.labels};
   const Pose3 X_CT = FrameOf(*out.segmentation.table);
-  for (const Thing& thing : ThingsOf(seen, out.segmentation.num_things, X_CT))
+  for (const Thing& thing : ThingsOf(seen, out.segmentation.num_things, X_CT)) {
     out.detections.push_back(Detect(seen, thing, X_CT));
+    out.detections.back().may_be_beside =
+        out.segmentation.may_be_beside.at(thing.label - kLabelFirstThing);
+  }
   return out;
 }
 

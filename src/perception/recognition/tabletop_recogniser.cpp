@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <iterator>
+#include <limits>
 #include <utility>
 
 namespace hires::perception {
@@ -85,12 +86,16 @@ std::optional<TabletopView> TabletopRecogniser::Look(
     auto& all = view.sighting.detections;
     NoteThings(found.segmentation.labels, static_cast<int>(all.size()), &view.thing_of);
     std::move(found.detections.begin(), found.detections.end(), std::back_inserter(all));
+    view.num_left_out += found.segmentation.num_left_out;
     seen = found.segmentation.table;
   };
   if (const auto tray_F = PlateOf(tray_link, robot_F)) {
     for (const geometry::Collision& shape : robot_C)
       if (shape.name != tray_F->name) others_C.push_back(shape);
     take(OnTray(*tray_F, X_FC, others_C, cloud, rng));
+    for (std::size_t i = 0; i < cloud.points.size(); ++i)  // what stands there is on no table
+      if (view.thing_of[i] >= 0)
+        cloud.points[i].setConstant(std::numeric_limits<float>::quiet_NaN());
   }
   view.num_own_points = self_.Cut(robot_C, &cloud);
   const CameraStand stand{X_CF.rotation * Eigen::Vector3d::UnitZ(), X_FC.translation.z()};

@@ -6,43 +6,13 @@
 #include <limits>
 #include <map>
 
+#include "perception/tabletop/hidden_face.h"
 #include "perception/tabletop/part_shape.h"
 
 namespace hires::perception {
 namespace {
 
-constexpr int kMinSurfels = 20;     // of a part that has faces
-constexpr double kInFront = 0.005;  // [m] nearer to the camera than what it hides
-
-// How far the camera saw in each direction: the nearest point of each pixel of a picture of 2 by 2
-// in tangents, coarser than the camera's own, so that it has no holes between measured points.
-class SeenDepth {
- public:
-  explicit SeenDepth(const PointCloud& cloud) {
-    depth_.assign(std::size_t{kPixels} * kPixels, kNothing);
-    for (const Eigen::Vector3f& p : cloud.points)
-      if (IsMeasured(p)) *At(p.cast<double>()) = std::min(*At(p.cast<double>()), p.z());
-  }
-
-  // Where nothing was measured something may be: the shadow of the projector, or too near.
-  bool Hides(const Eigen::Vector3d& p_C) const {
-    const float seen = *const_cast<SeenDepth*>(this)->At(p_C);
-    return seen == kNothing || seen < p_C.z() - kInFront;
-  }
-
- private:
-  static constexpr int kPixels = 600;
-  static constexpr float kNothing = 1e30F;
-
-  float* At(const Eigen::Vector3d& p) {
-    const auto pixel = [](double tangent) {
-      return std::clamp(static_cast<int>((tangent + 1.0) * kPixels / 2), 0, kPixels - 1);
-    };
-    return &depth_[static_cast<std::size_t>(pixel(p.y() / p.z())) * kPixels + pixel(p.x() / p.z())];
-  }
-
-  std::vector<float> depth_;
-};
+constexpr int kMinSurfels = 20;  // of a part that has faces
 
 struct Extent {
   double lower{1e9}, upper{-1e9};
@@ -68,14 +38,16 @@ class Joiner {
 
   void JoinVessels();
   void JoinFloors();
-  void JoinHidden(const PointCloud& cloud, const base::Rng& rng);
+  void JoinHidden(const PointCloud& cloud, const SeenDepth& seen, const base::Rng& rng);
   JoinedParts Result() const;
 
  private:
+  std::vector<int> PartOfSurfels() const;
   bool IsFloor(const std::vector<int>& members, const Opening& opening) const;
   bool IsVessel(const PartShape& inner, const PartShape& outer) const;
   bool GoOnBehind(int a, int b, const std::map<int, std::vector<Face>>& faces,
-                  const SeenDepth& seen) const;
+                  const HiddenFaces& hidden) const;
+  bool AreApart(int a, int b) const;
   double ShareOnFaces(const std::vector<int>& members, const std::vector<Face>& faces) const;
   void Merge(int into, int from);
 
@@ -163,33 +135,30 @@ double Joiner::ShareOnFaces(const std::vector<int>& members, const std::vector<F
   return static_cast<double>(on_faces) / static_cast<double>(members.size());
 }
 
-bool Joiner::GoOnBehind(int a, int b, const std::map<int, std::vector<Face>>& faces,
-                        const SeenDepth& seen) const {
-  const std::vector<int>&members_a = members_.at(a), &members_b = members_.at(b);
-  if (ShareOnFaces(members_a, faces.at(b)) < params_.min_same_face ||
-      ShareOnFaces(members_b, faces.at(a)) < params_.min_same_face) {
-    return false;
-  }
-  double nearest = std::numeric_limits<double>::infinity();
-  Eigen::Vector3d from = Eigen::Vector3d::Zero(), to = from;
-  for (const int i : members_a) {
-    for (const int j : members_b) {
-      const double distance = (all_.surfels[i].p_C - all_.surfels[j].p_C).squaredNorm();
-      if (distance >= nearest) continue;
-      nearest = distance;
-      from = all_.surfels[i].p_C;
-      to = all_.surfels[j].p_C;
-    }
-  }
-  if (nearest < params_.min_gap * params_.min_gap) return false;
-  constexpr int kSteps = 10;
-  int hidden = 0;
-  for (int k = 1; k < kSteps; ++k) hidden += seen.Hides(from + (to - from) * k / kSteps);
-  return hidden >= params_.min_hidden * (kSteps - 1);
+bool Joiner::AreApart(int a, int b) const {
+  for (const int i : members_.at(a))
+    for (const int j : members_.at(b))
+      if ((all_.surfels[i].p_C - all_.surfels[j].p_C).norm() < params_.min_gap) return false;
+  return true;
 }
 
-void Joiner::JoinHidden(const PointCloud& cloud, const base::Rng& rng) {
-  const SeenDepth seen(cloud);
+// Each face that both have is hidden between them: something seen there would be seen behind it.
+bool Joiner::GoOnBehind(int a, int b, const std::map<int, std::vector<Face>>& faces,
+                        const HiddenFaces& hidden) const {
+  const std::vector<int>&members_a = members_.at(a), &members_b = members_.at(b);
+  const double share =
+      std::max(ShareOnFaces(members_a, faces.at(b)), ShareOnFaces(members_b, faces.at(a)));
+  if (share < params_.min_same_face || !AreApart(a, b)) return false;
+  double least = std::numeric_limits<double>::infinity();
+  for (const Face& face : faces.at(a)) {
+    const double share = hidden.ShareHidden(face, members_a, members_b, params_.same_face);
+    if (share >= 0.0) least = std::min(least, share);
+  }
+  return least >= params_.min_hidden && least <= 1.0;
+}
+
+void Joiner::JoinHidden(const PointCloud& cloud, const SeenDepth& seen, const base::Rng& rng) {
+  HiddenFaces hidden(cloud, table_, all_, seen, PartOfSurfels());
   std::map<int, std::vector<Face>> faces;
   for (const auto& [part, members] : members_) {
     if (members.size() > kMinSurfels)
@@ -197,10 +166,20 @@ void Joiner::JoinHidden(const PointCloud& cloud, const base::Rng& rng) {
   }
   for (const auto& [a, faces_a] : faces) {
     for (const auto& [b, faces_b] : faces) {
-      if (a < b && members_.count(a) > 0 && members_.count(b) > 0 && GoOnBehind(a, b, faces, seen))
+      if (a < b && members_.count(a) > 0 && members_.count(b) > 0 &&
+          GoOnBehind(a, b, faces, hidden)) {
         Merge(a, b);
+        hidden.Merge(a, b);
+      }
     }
   }
+}
+
+std::vector<int> Joiner::PartOfSurfels() const {
+  std::vector<int> out(all_.surfels.size(), -1);
+  for (const auto& [part, members] : members_)
+    for (const int i : members) out[i] = part;
+  return out;
 }
 
 JoinedParts Joiner::Result() const {
@@ -221,12 +200,12 @@ JoinedParts Joiner::Result() const {
 }  // namespace
 
 JoinedParts JoinParts(const PointCloud& cloud, const Table& table, const SurfelCloud& surfels,
-                      std::vector<int> part, const PartJoiningParams& params,
+                      const SeenDepth& seen, std::vector<int> part, const PartJoiningParams& params,
                       const base::Rng& rng) {
   Joiner joiner(table, surfels, std::move(part), params);
   joiner.JoinVessels();
   joiner.JoinFloors();
-  joiner.JoinHidden(cloud, rng);
+  joiner.JoinHidden(cloud, seen, rng);
   return joiner.Result();
 }
 

@@ -15,17 +15,6 @@ constexpr double kSameDirection = 0.95;  // cosine, 18 degrees: what noise does 
 constexpr double kHighest = 0.98;
 constexpr double kWall = 0.5;  // sine of 30 degrees: steeper surfaces are walls
 
-bool LieOnOneLine(const std::vector<Eigen::Vector2d>& points) {
-  const Eigen::Vector2d& a = points.front();
-  const auto b = std::max_element(points.begin(), points.end(), [&](const auto& p, const auto& q) {
-    return (p - a).squaredNorm() < (q - a).squaredNorm();
-  });
-  const Eigen::Vector2d along = *b - a;
-  return std::all_of(points.begin(), points.end(), [&](const Eigen::Vector2d& p) {
-    return std::abs(along.x() * (p - a).y() - along.y() * (p - a).x()) < 1e-9;
-  });
-}
-
 Face FitFace(const SurfelCloud& all, const std::vector<int>& members,
              const Eigen::Vector3d& direction) {
   Eigen::Vector3d mean = Eigen::Vector3d::Zero();
@@ -43,6 +32,17 @@ Face FitFace(const SurfelCloud& all, const std::vector<int>& members,
 }
 
 }  // namespace
+
+bool LieOnOneLine(const std::vector<Eigen::Vector2d>& points) {
+  const Eigen::Vector2d& a = points.front();
+  const auto b = std::max_element(points.begin(), points.end(), [&](const auto& p, const auto& q) {
+    return (p - a).squaredNorm() < (q - a).squaredNorm();
+  });
+  const Eigen::Vector2d along = *b - a;
+  return std::all_of(points.begin(), points.end(), [&](const Eigen::Vector2d& p) {
+    return std::abs(along.x() * (p - a).y() - along.y() * (p - a).x()) < 1e-9;
+  });
+}
 
 bool Face::Holds(const Surfel& surfel, double tolerance) const {
   return std::abs(normal.dot(surfel.p_C) + offset) < tolerance &&

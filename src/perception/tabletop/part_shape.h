@@ -17,6 +17,8 @@ struct PartShape {
   double inward{0.0};  ///< how far its normals, seen from above, turn to the middle: 1 all, -1 none
 };
 
+bool LieOnOneLine(const std::vector<Eigen::Vector2d>& points);  ///< @pre there is one
+
 /// @return nothing where the surfels lie on one line, seen from above.
 std::optional<PartShape> ShapeOf(const SurfelCloud& all, const std::vector<int>& members,
                                  const Table& table);

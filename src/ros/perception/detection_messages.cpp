@@ -17,6 +17,7 @@ hires::perception::Detection FromMsg(const hires::Detection& msg) {
   }
   out.size = {msg.size.x, msg.size.y, msg.size.z};
   out.num_points = static_cast<int>(msg.num_points);
+  out.may_be_beside = msg.may_be_beside;
   return out;
 }
 
@@ -37,6 +38,7 @@ hires::Detection ToMsg(const hires::perception::Detection& detection) {
   out.size.y = detection.size.y();
   out.size.z = detection.size.z();
   out.num_points = static_cast<std::uint32_t>(detection.num_points);
+  out.may_be_beside = detection.may_be_beside;
   return out;
 }
 

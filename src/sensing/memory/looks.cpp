@@ -85,6 +85,9 @@ void ObjectMemory::Look(const BodyReading& body, const std::vector<Detection>& d
                           perception::ShapesOf(*robot_, body.X_MB, body.joints));
   num_ambiguous_ = static_cast<int>(
       std::count_if(named.begin(), named.end(), [](const Named& n) { return n.is_ambiguous; }));
+  num_beside_ =
+      static_cast<int>(std::count_if(detections.begin(), detections.end(),
+                                     [](const Detection& one) { return one.may_be_beside; }));
   Miss(sight, links, look, named);
   Appear(links, look, &named);
   Reveal(links, look, named);

@@ -124,6 +124,7 @@ bool ObjectMemory::MayBeNew(const Links& links, const Detection& detection,
   const bool has_kind = detection.label != perception::kUnknownLabel;
   if (!has_kind && !(detection.size.minCoeff() > 0.0)) return false;  // nobody measured it
   if (!has_kind && X_MO.translation.z() < kFloor) return false;       // FloorWatch remembers it
+  if (!has_kind && detection.may_be_beside) return false;             // furniture, perhaps
   const double reach = kAboutHand + 0.5 * detection.size.head<2>().norm();
   for (const auto& [arm, unused] : hands_) {
     const std::string& tool = robot_->profile.upper_body->arms.at(arm).tool_link;

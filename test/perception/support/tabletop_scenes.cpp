@@ -41,6 +41,7 @@ TabletopScene ReadTabletopScene(const std::string& stem) {
   scene.cloud.height = kHeight;
   scene.truth.assign(labels.begin(), labels.end());
   for (std::size_t i = 0; i < depth.size(); ++i) {
+    if (depth[i] == 0) scene.truth[i] = 0;
     const double z =
         depth[i] > 0 ? depth[i] * kDepthUnit : std::numeric_limits<double>::quiet_NaN();
     const double column = static_cast<double>(i % kWidth), row = static_cast<double>(i / kWidth);

@@ -39,12 +39,13 @@ Eigen::Array2d ExtentOf(const geometry::Polygon& outline) {
   return upper - lower;
 }
 
-ordered_json TableToJson(const perception::Table& table, long num_points) {
+ordered_json TableToJson(const perception::Table& table, long num_points, int num_left_out) {
   ordered_json outline = ordered_json::array();
   for (const Eigen::Vector2d& corner : table.outline) outline.push_back(ToJson(table.Lift(corner)));
   return {{"normal", ToJson(table.normal)},
           {"distance", table.offset},
           {"points", num_points},
+          {"left_out", num_left_out},
           {"outline", outline}};
 }
 
@@ -54,7 +55,8 @@ ordered_json ThingToJson(const Detection& thing, int label, bool is_segmenting) 
                     {"points", thing.num_points},
                     {"position", ToJson(thing.X_CO.translation)},
                     {"orientation", {q.x(), q.y(), q.z(), q.w()}},
-                    {"size", ToJson(thing.size)}};
+                    {"size", ToJson(thing.size)},
+                    {"may_be_beside", thing.may_be_beside}};
   if (is_segmenting) return json;
   ordered_json alternatives = ordered_json::array();
   for (const auto& other : thing.alternatives)
@@ -83,7 +85,8 @@ ordered_json ToJson(const Recognition& seen, const RecogniseOptions& options) {
   ordered_json table = nullptr;
   if (seen.segmentation.table) {
     table = TableToJson(*seen.segmentation.table,
-                        std::count(labels.begin(), labels.end(), perception::kLabelTable));
+                        std::count(labels.begin(), labels.end(), perception::kLabelTable),
+                        seen.segmentation.num_left_out);
   }
   return {{"schema", "hires/recognition"}, {"version", 2},   {"cloud", options.cloud},
           {"points", labels.size()},       {"table", table}, {"things", things}};
@@ -104,6 +107,24 @@ std::string KindText(const Detection& thing) {
   return text;
 }
 
+/// What is not sure, and what was left out.
+std::string DoubtText(const Recognition& seen) {
+  std::vector<std::string> unsure;
+  for (std::size_t i = 0; i < seen.detections.size(); ++i)
+    if (seen.detections[i].may_be_beside)
+      unsure.push_back(std::to_string(perception::kLabelFirstThing + i));
+  std::string text;
+  if (!unsure.empty()) {
+    text += fmt::format("may be beside the table, which is hidden about them: {}\n",
+                        base::Join(unsure, ", "));
+  }
+  if (seen.segmentation.num_left_out > 0) {
+    text += fmt::format("{} points above the table or just beside it are of no thing\n",
+                        seen.segmentation.num_left_out);
+  }
+  return text;
+}
+
 std::string TableText(const Recognition& seen, const RecogniseOptions& options) {
   if (!seen.segmentation.table) return "no table is seen\n";
   const perception::Table& table = *seen.segmentation.table;
@@ -114,6 +135,7 @@ std::string TableText(const Recognition& seen, const RecogniseOptions& options) 
                   seen.detections.empty()       ? std::string("nothing")
                   : seen.detections.size() == 1 ? std::string("one thing")
                                                 : fmt::format("{} things", seen.detections.size()));
+  text += DoubtText(seen);
   if (seen.detections.empty()) return text;
   std::vector<std::vector<std::string>> rows{
       {"label", "kind", "x [m]", "y [m]", "z [m]", "size [m]", "points"}};
