@@ -42,8 +42,8 @@ void FitHash::Add(const robot::Robot& robot) {
 // All members by name: one that is added to a struct and not here does not compile.
 
 void FitHash::Add(const perception::SegmentationParams& params) {
-  const auto& [table, surfels, parts, joining, surface_tolerance, max_below, max_above,
-               max_beside] = params;
+  const auto& [table, surfels, parts, smooth_borders, joining, surface_tolerance, max_below,
+               max_above, max_beside] = params;
   Add({surface_tolerance, max_below, max_above, max_beside});
   const auto& [num_samples, tolerance, min_share, max_inclination, min_height, max_height] = table;
   Add({static_cast<double>(num_samples), tolerance, min_share, max_inclination, min_height,
@@ -53,6 +53,8 @@ void FitHash::Add(const perception::SegmentationParams& params) {
   const auto& [voxel, seed, max_concavity, max_step, min_supervoxels, min_points] = parts;
   Add({voxel, seed, max_concavity, max_step, static_cast<double>(min_supervoxels),
        static_cast<double>(min_points)});
+  const auto& [border_concavity, share, min_bend, min_pairs] = smooth_borders;
+  Add({border_concavity, share, min_bend, static_cast<double>(min_pairs)});
   const auto& [min_inward, rim_tolerance, min_same_width, max_rim_gap, min_inner_share, min_floor,
                min_flatness, face_tolerance, same_face, min_same_face, min_gap, min_hidden] =
       joining;
