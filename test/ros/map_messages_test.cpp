@@ -2,6 +2,7 @@
 
 #include <gmock/gmock.h>
 
+#include <cmath>
 #include <limits>
 
 #include "hires/base/error.h"
@@ -58,6 +59,16 @@ TEST(MapMessagesTest, AMessageIsTheGridThatItSays) {
                                                Cell::kFree, Cell::kUnknown, Cell::kOccupied));
 }
 
+TEST(MapMessagesTest, ATurnedOriginTurnsTheGrid) {
+  nav_msgs::OccupancyGrid map = SmallMap();
+  map.info.origin.orientation.z = map.info.origin.orientation.w = std::sqrt(0.5);
+  const auto grid = FromMsg(map);
+  EXPECT_EQ(grid.width, 2);
+  EXPECT_EQ(grid.height, 3);
+  EXPECT_NEAR(grid.origin.x(), -1.0 - 2 * 0.05, 1e-6);
+  EXPECT_EQ(grid.at(1, 1), Cell::kOccupied) << "the second cell of the lower row";
+}
+
 TEST(MapMessagesTest, AMapThatIsNoneIsRefused) {
   nav_msgs::OccupancyGrid map = SmallMap();
   map.data.pop_back();
@@ -67,8 +78,8 @@ TEST(MapMessagesTest, AMapThatIsNoneIsRefused) {
   map.info.resolution = 0.0f;
   EXPECT_THAT(ErrorOf(map), HasSubstr("resolution is 0"));
   map = SmallMap();
-  map.info.origin.orientation.z = 0.1;
-  EXPECT_THAT(ErrorOf(map), HasSubstr("origin is turned"));
+  map.info.origin.orientation.x = 0.1;
+  EXPECT_THAT(ErrorOf(map), HasSubstr("origin is tilted"));
   map = SmallMap();
   map.info.origin.position.x = std::numeric_limits<double>::quiet_NaN();
   EXPECT_THAT(ErrorOf(map), HasSubstr("origin is not finite"));

@@ -3,21 +3,24 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <map>
 
 #include "hires/base/error.h"
 #include "hires/base/rng.h"
 #include "hires/base/text.h"
 #include "hires/world/occupancy_grid.h"
 #include "support/log_catcher.h"
-#include "world/pgm.h"
+#include "support/rounds.h"
 #include "world/temp_folder.h"
 
 namespace hires::world::map_file_test {
 namespace {
 
+using test_support::Rounds;
 using testing::AllOf;
 using testing::ElementsAre;
 using testing::HasSubstr;
+using testing::Not;
 using testing::ThrowsMessage;
 
 const char kYaml[] =
@@ -112,18 +115,171 @@ TEST_F(MapFileTest, SavedMapsReadBackTheSame) {
 TEST_F(MapFileTest, RefusesYamlThatIsWrong) {
   EXPECT_THAT(ErrorWith("origin: [1.0, 2.0, 0.0]\n", ""),
               AllOf(HasSubstr("m.yaml: origin is missing"), HasSubstr("origin: [0.0, 0.0, 0.0]")));
-  EXPECT_THAT(ErrorWith("2.0, 0.0]", "2.0, 0.5]"),
-              AllOf(HasSubstr("origin"), HasSubstr("of 0 and not 0.5"), HasSubstr("rotated"),
-                    HasSubstr("line 3")));
+  EXPECT_THAT(ErrorWith("2.0, 0.0]", "2.0]"),
+              AllOf(HasSubstr("m.yaml:3: origin"), HasSubstr("yaw")));
+  EXPECT_THAT(ErrorWith("2.0, 0.0]", "2.0, 180]"), HasSubstr("wanted radians: 3.14159"));
+  EXPECT_THAT(ErrorWith("occupied_thresh: 0.65", "occupied_thresh: 65"), HasSubstr("it is 0.65"));
   EXPECT_THAT(ErrorWith("[1.0,", "[1e9,"), HasSubstr("origin"));
   EXPECT_THAT(ErrorWith("[1.0,", "[.nan,"), HasSubstr("origin"));
   EXPECT_THAT(ErrorWith("resolution: 0.1", "resolution: 0"), HasSubstr("resolution"));
   EXPECT_THAT(ErrorWith("negate: 0", "negate: 2"), HasSubstr("negate"));
   EXPECT_THAT(ErrorWith("free_thresh: 0.196", "free_thresh: 0.7"),
               HasSubstr("at most occupied_thresh"));
-  EXPECT_THAT(ErrorWith("image: m.pgm", "image: none.pgm"), HasSubstr("none.pgm"));
-  EXPECT_THAT(ErrorWith("negate: 0", "negate: 0\nmode: scale"), HasSubstr("trinary"));
-  EXPECT_THAT(ErrorWith("negate: 0", "negate: 0\ntypo: 1"), HasSubstr("typo"));
+  EXPECT_THAT(ErrorWith("negate: 0", "negate: 0\nmode: fancy"), HasSubstr("trinary, scale or raw"));
+  EXPECT_THAT(ErrorWith("resolution", "reslution"),
+              AllOf(HasSubstr("m.yaml:2: key 'reslution'"), HasSubstr("did you mean 'resolution'"),
+                    Not(HasSubstr("missing"))));
+  EXPECT_THAT(ErrorWith("negate: 0", "negate: 0\nnegat: 1"), HasSubstr("did you mean 'negate'"));
+  EXPECT_THAT(ErrorWith("occupied_thresh", "occupied_threshold"), HasSubstr("'occupied_thresh'?"));
+  EXPECT_THAT(ErrorWith("negate: 0", "negate: 0\nnegate: 1"), HasSubstr("line 4; keep one"));
+  EXPECT_THAT(MessageOf<base::ConfigError>([&] { Load("- 1\n"); }), HasSubstr("a list of 1"));
+  EXPECT_THAT(MessageOf<base::ConfigError>([&] { Load("a: [\n"); }), HasSubstr("no valid YAML"));
+}
+
+TEST_F(MapFileTest, OtherKindsOfFilesAreNamed) {
+  EXPECT_THAT(MessageOf<base::ConfigError>([&] { Load("<?xml version='1.0'?>\n<sdf/>"); }),
+              HasSubstr("--world"));
+  EXPECT_THAT(MessageOf<base::ConfigError>([&] { Load("<robot name='a'/>"); }),
+              HasSubstr("--robot takes it"));
+}
+
+TEST_F(MapFileTest, ForeignKeysArePassedOverWithOneWarning) {
+  const test_support::LogCatcher log(base::LogLevel::kWarn);
+  const OccupancyGrid grid =
+      Load(std::string("map_type: occupancy\n") + kYaml + "created: 2024-05-01\nrooms: {a: 1}\n");
+  EXPECT_EQ(grid.width, 2);
+  EXPECT_THAT(log.lines,
+              ElementsAre(AllOf(HasSubstr("'map_type' (line 1)"), HasSubstr("'created' (line 8)"),
+                                HasSubstr("'rooms' (line 9)"))));
+  EXPECT_TRUE(grid.notes.empty()) << "what they say bears on no answer";
+}
+
+TEST_F(MapFileTest, WhatMapServerHasDefaultsForIsTakenAndSaid) {
+  const test_support::LogCatcher log(base::LogLevel::kWarn);
+  const OccupancyGrid grid = Load("image: m.pgm\nresolution: 0.1\norigin: [1.0, 2.0, 0.0]\n");
+  EXPECT_EQ(grid.cells, Load(kYaml).cells);
+  EXPECT_THAT(grid.notes,
+              ElementsAre(HasSubstr("negate: 0, occupied_thresh: 0.65, free_thresh: 0.196")));
+  EXPECT_EQ(log.lines, grid.notes);
+}
+
+TEST_F(MapFileTest, ModesAreMapServers) {
+  folder_.Write("m.pgm", "P2 7 1 255 0 19 20 65 66 101 255\n");
+  EXPECT_THAT(Load(std::string(kYaml) + "mode: scale\n").cells,
+              ElementsAre(Cell::kOccupied, Cell::kOccupied, Cell::kOccupied, Cell::kOccupied,
+                          Cell::kOccupied, Cell::kUnknown, Cell::kFree));
+  EXPECT_THAT(Load(std::string(kYaml) + "mode: raw\n").cells,
+              ElementsAre(Cell::kFree, Cell::kFree, Cell::kUnknown, Cell::kUnknown, Cell::kOccupied,
+                          Cell::kUnknown, Cell::kUnknown));
+}
+
+TEST_F(MapFileTest, AMissingPictureIsToldWithItsLineAndWhatLiesBeside) {
+  folder_.Write("floor.PNG", "");
+  EXPECT_THAT(ErrorWith("image: m.pgm", "image: floor.png"),
+              AllOf(HasSubstr("m.yaml:1: image floor.png is not there"),
+                    HasSubstr("floor.PNG, m.pgm are")));
+  EXPECT_THAT(ErrorWith("image: m.pgm", "image: .."), HasSubstr("is a folder"));
+  EXPECT_THAT(ErrorWith("image: m.pgm", "image: floor.PNG"), HasSubstr("floor.PNG: is empty"));
+}
+
+TEST_F(MapFileTest, APictureOfAnotherComputerIsReadFromBeside) {
+  for (const char* path : {"/home/user/maps/m.pgm", "'C:\\maps\\m.pgm'", "../other/m.pgm"}) {
+    const test_support::LogCatcher log(base::LogLevel::kWarn);
+    std::string yaml = kYaml;
+    yaml.replace(yaml.find("m.pgm"), 5, path);
+    EXPECT_EQ(Load(yaml).width, 2);
+    EXPECT_THAT(log.lines, ElementsAre(HasSubstr("but m.pgm lies beside")));
+  }
+}
+
+TEST_F(MapFileTest, TurnedOriginsPlaceObstaclesWhereRVizDoes) {
+  std::string yaml = kYaml;
+  yaml.replace(yaml.find("2.0, 0.0]"), 9, "2.0, 1.570796]");
+  const OccupancyGrid quarter = Load(yaml);  // the occupied cell is (1, 1) of the picture's
+  EXPECT_EQ(quarter.at(0, 1), Cell::kOccupied);
+  EXPECT_NEAR(quarter.origin.x(), 0.8, 1e-12);
+  EXPECT_TRUE(quarter.notes.empty());
+  yaml.replace(yaml.find("1.570796"), 8, "0.5");
+  const OccupancyGrid turned = Load(yaml);
+  EXPECT_THAT(turned.notes, ElementsAre(HasSubstr("is turned by 0.5 rad")));
+  const Eigen::Vector2d p =
+      Eigen::Vector2d(1, 2) + Eigen::Rotation2Dd(0.5) * Eigen::Vector2d(0.15, 0.15);
+  const Eigen::Vector2d cell = (p - turned.origin) / turned.resolution;
+  EXPECT_EQ(turned.at(static_cast<int>(cell.x()), static_cast<int>(cell.y())), Cell::kOccupied);
+}
+
+/// One thing that is wrong with a map (or foreign to it), and what tells of it.
+struct Defect {
+  const char* line;  // of the YAML that it stands for; the first letters name it
+  const char* by;
+  const char* told;
+};
+constexpr Defect kErrors[] = {
+    {"image", "image: gone.pgm", "gone.pgm is not there"},
+    {"image", "image: broken.png", "broken.png: is a broken PNG"},
+    {"image", "imge: m.pgm", "did you mean 'image'"},
+    {"resolution", "resolution: zero", "resolution is 'zero'"},
+    {"resolution", "resolution: -0.1", "resolution is '-0.1'"},
+    {"resolution", "", "resolution is missing"},
+    {"origin", "origin: [1.0, 2.0]", "origin is a list of 2"},
+    {"origin", "origin: [1.0, here, 0.0]", "number 2 is 'here'"},
+    {"origin", "", "origin is missing"},
+    {"negate", "negate: maybe", "negate is 'maybe'"},
+    {"occupied_thresh", "occupied_thresh: 65", "occupied_thresh is '65'"},
+    {"free_thresh", "free_tresh: 0.2", "did you mean 'free_thresh'"},
+    {"free_thresh", "free_thresh: 0.9", "free_thresh is 0.9"},
+    {"mode", "mode: colourful", "mode is 'colourful'"},
+};
+constexpr Defect kOddities[] = {
+    {"image", "image: /home/user/m.pgm", "lies beside the YAML"},
+    {"negate", "", "negate: 0"},
+    {"free_thresh", "", "free_thresh: 0.196"},
+    {"mode", "map_type: occupancy", "'map_type'"},
+    {"extra", "created: today", "'created'"},
+    {"origin", "origin: [1.0, 2.0, 0.7]", "is turned by 0.7 rad"},
+};
+
+TEST_F(MapFileTest, OneToThreeDefectsAreAllNamedAtOnce) {
+  folder_.Write("broken.png", "\x89PNG\r\n\x1a\n");
+  const std::vector<Defect> errors(std::begin(kErrors), std::end(kErrors));
+  std::vector<Defect> all(std::begin(kOddities), std::end(kOddities));
+  all.insert(all.end(), errors.begin(), errors.end());
+  for (int seed = 0; seed < Rounds(400); ++seed) {
+    base::Rng rng = base::Rng(57).Fork(seed);
+    std::map<std::string, std::string> lines{{"image", "image: m.pgm"},
+                                             {"resolution", "resolution: 0.1"},
+                                             {"origin", "origin: [1, 2, 0]"},
+                                             {"negate", "negate: 0"},
+                                             {"occupied_thresh", "occupied_thresh: 0.65"},
+                                             {"free_thresh", "free_thresh: 0.196"},
+                                             {"mode", "mode: trinary"},
+                                             {"extra", ""}};
+    std::map<std::string, std::string> told;
+    bool is_wrong = false;
+    for (int i = 1 + rng.Index(3); i > 0; --i) {
+      const int pick = rng.Index(static_cast<int>(all.size()));
+      const Defect& defect = all[static_cast<std::size_t>(pick)];
+      if (told.count(defect.line) > 0) continue;
+      told[defect.line] = defect.told;
+      lines[defect.line] = defect.by;
+      is_wrong |= pick >= static_cast<int>(std::size(kOddities));
+    }
+    std::string yaml;
+    for (const auto& [key, line] : lines) yaml += line + "\n";
+    const test_support::LogCatcher log(base::LogLevel::kWarn);
+    std::string heard;
+    if (is_wrong) {
+      heard = MessageOf<base::ConfigError>([&] { Load(yaml); });
+    } else {
+      Load(yaml);
+    }
+    for (const std::string& line : log.lines) heard += "\n" + line;
+    for (const auto& [key, text] : told) {
+      // What has the picture's size needs the picture, and its place needs a place.
+      if (is_wrong && text.find("is turned") == 0) continue;
+      EXPECT_THAT(heard, HasSubstr(text)) << "seed " << seed << "\n" << yaml;
+    }
+  }
 }
 
 TEST_F(MapFileTest, RefusesToWriteWhereNothingCanBe) {
@@ -141,78 +297,6 @@ TEST(OriginalMapTest, HasTheSizeAndTheMissingOriginOfTheOriginal) {
   EXPECT_EQ(floor.height, 342);
   EXPECT_THAT(MessageOf<base::ConfigError>([&] { LoadMap(data + "/map_pr2.yaml"); }),
               HasSubstr("origin is missing"));
-}
-
-// --- images ------------------------------------------------------------------------------------
-
-std::string PgmError(const std::string& bytes) {
-  return MessageOf<base::ConfigError>([&] { ParsePgm(bytes, "a.pgm"); });
-}
-
-TEST(PgmTest, PlainAndRawGiveTheSamePixels) {
-  const std::string raw =
-      std::string("P5\n# made by hand\n3 2\n255\n") + std::string("\x00\x01\x0a\x23\xfe\xff", 6);
-  const GreyImage image = ParsePgm(raw, "a.pgm");
-  EXPECT_EQ(image.width, 3);
-  EXPECT_EQ(image.height, 2);
-  EXPECT_THAT(image.pixels, ElementsAre(0, 1, 10, 35, 254, 255));
-  EXPECT_EQ(ParsePgm("P2 3 #w\n2 255\n0 1 10\n35 # in between\n254 255", "a.pgm").pixels,
-            image.pixels);
-}
-
-TEST(PgmTest, OtherMaximaAreScaledTo255) {
-  EXPECT_THAT(ParsePgm("P2 3 1 15 0 7 15", "a.pgm").pixels, ElementsAre(0, 119, 255));
-  const std::string wide = std::string("P5 2 1 65535\n") + std::string("\xff\xff\x80\x00", 4);
-  EXPECT_THAT(ParsePgm(wide, "a.pgm").pixels, ElementsAre(255, 128));
-}
-
-TEST(PgmTest, FormattedImageReadsBackTheSame) {
-  const GreyImage image{2, 3, {'#', '\n', ' ', 0, 255, 7}};
-  EXPECT_EQ(ParsePgm(FormatPgm(image), "a.pgm").pixels, image.pixels);
-  EXPECT_THROW(FormatPgm({2, 2, {0}}), std::logic_error);
-}
-
-TEST(PgmTest, RefusesWhatIsNoImage) {
-  EXPECT_THAT(PgmError(""), AllOf(HasSubstr("a.pgm"), HasSubstr("P2, P5")));
-  EXPECT_THAT(PgmError("P6 1 1 255 abc"), HasSubstr("P2, P5"));
-  EXPECT_THAT(PgmError("P5"), HasSubstr("width"));
-  EXPECT_THAT(PgmError("P51 1 255 a"), HasSubstr("width"));
-  EXPECT_THAT(PgmError("P5 -1 1 255 a"), HasSubstr("no number where the width belongs"));
-  EXPECT_THAT(PgmError("P5 0 1 255 a"), HasSubstr("width 0"));
-  EXPECT_THAT(PgmError("P5 1"), HasSubstr("height"));
-  EXPECT_THAT(PgmError("P5 1 # only a comment"), HasSubstr("height"));
-  EXPECT_THAT(PgmError("P5 1 1 0 a"), HasSubstr("maximum grey value 0"));
-  EXPECT_THAT(PgmError("P5 1 1 70000 a"), HasSubstr("70000"));
-  EXPECT_THAT(PgmError("P5 99999999999999999999 1 255 a"), HasSubstr("width above"));
-}
-
-TEST(PgmTest, RefusesImagesThatAreLargerThanTheirFile) {
-  EXPECT_THAT(PgmError("P5 2 2 255\nabc"), HasSubstr("ends before its 4 pixels"));
-  EXPECT_THAT(PgmError("P5 2 1 65535\nabc"), HasSubstr("of 2 byte(s)"));
-  EXPECT_THAT(PgmError("P2 2 2 255 1 2 3"), HasSubstr("next pixel"));
-  EXPECT_THAT(PgmError("P2 9999 9999 255 1"), HasSubstr("ends before"));
-  EXPECT_THAT(PgmError("P5 100000 100000 255\nabc"), HasSubstr("scale it down"));
-}
-
-TEST(PgmTest, RefusesValuesAboveTheMaximum) {
-  EXPECT_THAT(PgmError("P2 1 1 15 16"), HasSubstr("grey value 16, above its maximum 15"));
-  EXPECT_THAT(PgmError("P5 1 1 15\n\x10"), HasSubstr("above its maximum"));
-  EXPECT_THAT(PgmError("P2 1 1 255 x"), HasSubstr("next pixel"));
-}
-
-TEST(PgmTest, SurvivesEveryCutAndEveryChangedByte) {
-  const std::string good = "P5\n# c\n3 2\n255\nabcdef";
-  for (std::size_t size = 0; size < good.size(); ++size) PgmError(good.substr(0, size));
-  base::Rng rng(11);
-  for (int i = 0; i < 2000; ++i) {
-    std::string changed = good;
-    changed[rng.Index(static_cast<int>(good.size()))] = static_cast<char>(rng.Index(256));
-    try {
-      const GreyImage image = ParsePgm(changed, "a.pgm");
-      EXPECT_EQ(image.pixels.size(), static_cast<std::size_t>(image.width) * image.height);
-    } catch (const base::ConfigError&) {
-    }
-  }
 }
 
 }  // namespace

@@ -54,9 +54,20 @@ OccupancyGrid SliceWorld(const World& world, double z_min, double z_max, double 
 std::optional<OccupancyGrid> FloorHoles(const World& world, double depth, double resolution = 0.05,
                                         double margin = 0.5);
 
-/// Reads a map_server YAML and its PGM (P2, P5) or PNG. Thresholds as map_server's trinary mode.
-/// @throws base::ConfigError naming file, key and remedy (a missing origin included, as map_server
-/// does; rotated origins are refused).
+/// Reads a map_server YAML and its picture: PGM and other netpbm, PNG, BMP or JPEG. Cells are
+/// map_server's; what is between free and occupied is unknown:
+/// - mode trinary: the share of black (of white with `negate`) by the thresholds. An alpha channel
+///   is averaged with the colours, as map_server's image_loader.cpp has it ("alpha will be averaged
+///   in with color channels when using trinary mode") and nav2_map_server's map_io.cpp kept it;
+/// - mode scale: by the thresholds likewise, without alpha; what is not wholly opaque is unknown
+///   (map_io.cpp);
+/// - mode raw: the level 0 .. 100 is an occupancy in percent, and goes by the thresholds; above, it
+///   is unknown.
+/// Palettes count by their colours (map_io.cpp; image_loader.cpp takes an index for a grey). A yaw
+/// of the origin turns the grid (TurnedGrid). What was passed over, assumed or is doubtful is
+/// logged as a warning; what bears on answers stands in `notes`, too.
+/// @throws base::ConfigError with all that is wrong, each with its line where it has one (a missing
+/// origin included, as map_server does).
 OccupancyGrid LoadMap(const std::string& yaml_path);
 void SaveMap(const OccupancyGrid& grid, const std::string& yaml_path);
 

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "hires/base/error.h"
+#include "hires/world/turned_grid.h"
 
 namespace hires_ros {
 namespace {
@@ -48,12 +49,15 @@ void RequireSound(const nav_msgs::OccupancyGrid& map) {
     throw ConfigError("map: info.origin is not finite, wanted numbers");
   }
   const auto& turn = info.origin.orientation;
-  if (!(std::abs(turn.x) + std::abs(turn.y) + std::abs(turn.z) <= 1e-6)) {
+  if (!(std::abs(turn.x) + std::abs(turn.y) <= 1e-6 && std::isfinite(turn.z + turn.w))) {
     throw ConfigError(
-        "map: its origin is turned; save it with yaw 0, and say how it lies in the "
-        "world by map_to_world");
+        "map: its origin is tilted out of the floor's plane, wanted a turn about z alone; save it "
+        "with a yaw");
   }
 }
+
+/// [rad] about z; a quaternion that nobody filled in turns nothing.
+double YawOf(const geometry_msgs::Quaternion& turn) { return 2.0 * std::atan2(turn.z, turn.w); }
 
 }  // namespace
 
@@ -66,7 +70,7 @@ OccupancyGrid FromMsg(const nav_msgs::OccupancyGrid& map) {
   grid.origin = {map.info.origin.position.x, map.info.origin.position.y};
   grid.cells.reserve(map.data.size());
   for (const int value : map.data) grid.cells.push_back(CellOf(value));
-  return grid;
+  return hires::world::TurnedGrid(grid, YawOf(map.info.origin.orientation));
 }
 
 nav_msgs::OccupancyGrid ToMsg(const OccupancyGrid& grid, const std_msgs::Header& header) {
