@@ -142,14 +142,14 @@ void RobotSimulator::RefuseInsideRobot(const world::ObjectState& object, physics
       const std::string link = planar_->LinkOfBody(touch.other);
       const double deepest = inside ? inside->depth : kStartSlack;
       if (touch.loose == body && touch.depth > deepest && !link.empty()) {
-        inside = Inside{link, touch.depth};
+        inside = Inside{link, touch.depth, touch.depth};
       }
     }
   } else {
     const auto model = scene_->world.RequireModel(object.model);
     inside = FindInside(model->collisions, object.X_MO, frozen_->shapes_B(), X_MB());
   }
-  if (inside) FailInsideRobot(object, scene_->world, *inside);
+  if (inside) FailInsideRobot(object, scene_->world, *inside, base().X_MB);
 }
 
 }  // namespace hires::simulation

@@ -39,6 +39,48 @@ double HeightBelowOrigin(const world::ObjectModel& model) {
   return -bounds.lower.z();
 }
 
+/// Whether it stands where the world's file has it.
+bool IsOfWorld(const world::ObjectState& object, const world::World& world) {
+  const world::ObjectState* known = world.initial.Find(object.name);
+  return known != nullptr && known->model == object.model && object.attached_to.empty() &&
+         (known->X_MO.translation - object.X_MO.translation).norm() < kStartSlack;
+}
+
+/// "'carton' of the world (hall.world:5)", or "object 'carton'".
+std::string Described(const world::ObjectState& object, const world::World& world) {
+  if (!IsOfWorld(object, world)) return fmt::format("object '{}'", object.name);
+  const std::string source = world::SourceOf(object.name, world);
+  return fmt::format("object '{}' of the world{}", object.name,
+                     source.empty() ? "" : " (" + source + ")");
+}
+
+/// " at area 'a'", if the robot stands at one or next to it.
+std::string AtArea(const geometry::Pose2& X_MB, const world::World& world) {
+  double nearest = 0.25;  // [m] what a drawn start may be off
+  std::string text;
+  for (const auto& [name, X_MF] : world.frames) {
+    const double distance = (X_MF.translation.head<2>() - X_MB.position()).norm();
+    if (distance >= nearest) continue;
+    nearest = distance;
+    const auto spelled = world.frame_names.find(name);
+    text =
+        fmt::format(" at area '{}'", spelled == world.frame_names.end() ? name : spelled->second);
+  }
+  return text;
+}
+
+[[noreturn]] void FailBegunInside(const world::ObjectState& object, const world::World& world,
+                                  const Inside& inside, const geometry::Pose2& X_MB) {
+  const Eigen::Vector3d& p = object.X_MO.translation;
+  throw base::ConfigError(fmt::format(
+      "the robot would begin inside of {0}, which stands at x {1:.3f} m, y {2:.3f} m, z {3:.3f} m "
+      "and reaches {4:.3f} m deep into its '{5}': it begins{6} at x {7:.3f} m, y {8:.3f} m, yaw "
+      "{9:.3f} rad; begin elsewhere (another --from), or move '{10}' in the file, or for this "
+      "request (--put {10}:X,Y,Z)",
+      Described(object, world), p.x(), p.y(), p.z(), inside.depth, inside.part, AtArea(X_MB, world),
+      X_MB.x, X_MB.y, X_MB.yaw, object.name));
+}
+
 }  // namespace
 
 bool Overlap(const std::vector<geometry::Collision>& a, const Pose3& X_MA,
@@ -70,25 +112,27 @@ std::optional<Inside> FindInside(const std::vector<geometry::Collision>& object,
       const geometry::Aabb bounds = geometry::BoundsOf(shape.shape, X_MO * shape.X_BS);
       const double depth = std::min(bounds.upper.z(), around.upper.z()) -
                            std::max(bounds.lower.z(), around.lower.z());
-      if (!deepest || depth > deepest->depth) deepest = {part.name, depth};
+      if (!deepest || depth > deepest->depth)
+        deepest = {part.name, depth, around.upper.z() - bounds.lower.z()};
     }
   }
   return deepest;
 }
 
 void FailInsideRobot(const world::ObjectState& object, const world::World& world,
-                     const Inside& inside) {
+                     const Inside& inside, const geometry::Pose2& X_MB) {
+  if (IsOfWorld(object, world)) FailBegunInside(object, world, inside, X_MB);
   const double below = HeightBelowOrigin(*world.RequireModel(object.model));
+  const bool is_origin = below > kStartSlack && std::abs(inside.sunk - below) <= kStartSlack;
   const std::string cause =
-      below > kStartSlack
-          ? fmt::format(
-                "its model '{}' reaches {:.3f} m below its origin, and a pose is that of the "
-                "middle of the underside: raise the shapes in the model by as much",
-                object.model, below)
-          : fmt::format(
-                "its pose has z {:.3f} m: give the height of what it stands on, or put it on "
-                "a free place",
-                object.X_MO.translation.z());
+      is_origin ? fmt::format(
+                      "its model '{}' reaches {:.3f} m below its origin, and a pose is that of the "
+                      "middle of the underside: raise the shapes in the model by as much",
+                      object.model, below)
+                : fmt::format(
+                      "its pose has z {:.3f} m: give the height of what it stands on, or put it on "
+                      "a free place",
+                      object.X_MO.translation.z());
   throw base::ConfigError(
       fmt::format("object '{}' starts inside the robot, {:.3f} m deep in '{}'; {}", object.name,
                   inside.depth, inside.part, cause));
@@ -189,8 +233,8 @@ void RefuseTogether(const world::ObjectState& object, const world::ObjectState& 
   const auto model = world.RequireModel(object.model);
   const auto other = world.RequireModel(earlier.model);
   if (Overlap(model->collisions, object.X_MO, other->collisions, earlier.X_MO)) {
-    throw base::ConfigError(fmt::format("object '{}' starts inside '{}'; put it on a free place",
-                                        object.name, earlier.name));
+    throw base::ConfigError(fmt::format("{} starts inside '{}'; put it on a free place",
+                                        Described(object, world), earlier.name));
   }
 }
 
@@ -198,8 +242,8 @@ void RefuseInStatics(const world::ObjectState& object, const world::World& world
   const auto model = world.RequireModel(object.model);
   for (const world::StaticBody& body : world.statics) {
     if (!Overlap(model->collisions, object.X_MO, body.collisions, body.X_MB)) continue;
-    throw base::ConfigError(fmt::format("object '{}' starts inside '{}'; put it on a free place",
-                                        object.name, body.name));
+    throw base::ConfigError(fmt::format("{} starts inside '{}'; put it on a free place",
+                                        Described(object, world), body.name));
   }
 }
 

@@ -23,6 +23,7 @@ bool Overlap(const std::vector<geometry::Collision>& a, const geometry::Pose3& X
 struct Inside {
   std::string part;   ///< name of that shape
   double depth{0.0};  ///< [m] by which both heights overlap
+  double sunk{0.0};   ///< [m] from the lowest point of what is inside up to the top of the shape
 };
 /// The one of the robot's shapes that the object reaches into deepest, as Overlap judges.
 std::optional<Inside> FindInside(const std::vector<geometry::Collision>& object,
@@ -30,9 +31,10 @@ std::optional<Inside> FindInside(const std::vector<geometry::Collision>& object,
                                  const std::vector<geometry::Collision>& robot_B,
                                  const geometry::Pose3& X_MB);
 
-/// Throws: which object is inside of which part, how deep, and what is the likely cause.
+/// Throws: which object is inside of which part, how deep, and what is the likely cause. What
+/// stands where the world's file has it is not to blame: the robot begins there.
 [[noreturn]] void FailInsideRobot(const world::ObjectState& object, const world::World& world,
-                                  const Inside& inside);
+                                  const Inside& inside, const geometry::Pose2& X_MB);
 
 /// Does the object's lowest point lie on top of one of the robot's shapes? Its origin, or the
 /// middle of its outline, is over that shape.

@@ -36,6 +36,7 @@ bool ComesBefore(const std::string& a, const std::string& b) {
 struct WorldModel {
   std::string name;
   std::string where;  ///< for messages
+  std::string place;  ///< of a loose one: "hall.world:12"
   geometry::Pose3 X_MB;
   StaticShapes shapes;                ///< of what is static
   std::optional<ObjectModel> object;  ///< what can move, under the name that its kind should have
@@ -135,6 +136,7 @@ class WorldBuilder {
     } else {
       result.object = LooseObjectOf(model, *finder_, &meshes_);
       result.object->name = NameOfKind(model);
+      result.place = PlaceOf(model.Element());
     }
     return result;
   }
@@ -173,6 +175,7 @@ class WorldBuilder {
     if (model.object) {
       world_.initial.objects.push_back(
           {model.name, Share(*std::move(model.object)), model.X_MB, {}, ""});
+      world_.sources[model.name] = model.place;  // as of what is static
       return;
     }
     if (model.shapes.floor_friction) SetFloor(*model.shapes.floor_friction, model.where);
