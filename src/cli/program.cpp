@@ -1,11 +1,13 @@
 #include "cli/program.h"
 
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <atomic>
 #include <csignal>
+#include <ctime>
 #include <filesystem>
 #include <iostream>
 #include <set>
@@ -20,9 +22,39 @@
 namespace hires::cli {
 namespace {
 
-std::atomic<bool> interrupted{false};
+constexpr unsigned kPatience = 1;  // [s] after a signal, for a verb to ask
+constexpr double kMuch = 0.3;      // [s] of work; less: the computer has no time for us
+constexpr int kMostPatience = 10;  // times
 
-void OnInterrupt(int) { interrupted = true; }
+std::atomic<bool> interrupted{false}, heeded{false};
+std::atomic<double> worked_before{0.0};  // [s] when the signal came
+std::atomic<int> times_waited{0};
+
+double WorkedUntilNow() {
+  timespec time{};
+  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &time);
+  return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
+}
+
+// Both call only what a handler of signals may.
+void OnInterrupt(int) {
+  worked_before = WorkedUntilNow();
+  interrupted = true;
+  alarm(kPatience);
+}
+
+/// A verb that worked on and did not ask is still reading what it was given: it has nothing to
+/// finish.
+void OnUnheeded(int) {
+  if (heeded) return;
+  if (WorkedUntilNow() - worked_before < kMuch && ++times_waited < kMostPatience) {
+    alarm(kPatience);
+    return;
+  }
+  constexpr char kText[] = "hires: interrupted; nothing is written\n";
+  [[maybe_unused]] const auto written = write(STDERR_FILENO, kText, sizeof(kText) - 1);
+  _exit(kExitCancelled);
+}
 
 /// The first argument from `place` on that is neither an option of the verb nor an option's value;
 /// the number of arguments where there is none.
@@ -110,6 +142,7 @@ int RunVerb(const std::vector<ProgramVerb>& verbs) {
     if (!*each.verb) continue;
     if (each.on_signal == OnSignal::kAsk) {
       for (const int signal : {SIGINT, SIGTERM, SIGHUP}) std::signal(signal, OnInterrupt);
+      std::signal(SIGALRM, OnUnheeded);
     }
     return each.run();
   }
@@ -125,7 +158,10 @@ bool IsQuiet(const CLI::App& app) {
 
 }  // namespace
 
-bool IsInterrupted() { return interrupted; }
+bool IsInterrupted() {
+  if (interrupted) heeded = true;
+  return interrupted;
+}
 
 int RunProgram(const Program& program, const std::vector<std::string>& arguments) {
   HIRES_CHECK(!arguments.empty(), "the program's name is missing");

@@ -14,7 +14,8 @@ namespace hires::cli {
 
 /// What SIGINT, SIGTERM and SIGHUP do while a verb runs.
 enum class OnSignal {
-  kAsk,  ///< the verb asks IsInterrupted() and finishes what it must
+  kAsk,  ///< the verb asks IsInterrupted() and finishes what it must; one that has not asked within
+         ///< a second (it reads a large file) ends at once, with kExitCancelled
   kEnd   ///< it has nothing to finish and ends as any program does
 };
 

@@ -1,9 +1,12 @@
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include "hires/base/error.h"
 #include "hires/imagination/kept_rollouts.h"
 #include "imagination/room_rollouts.h"
 #include "imagination/same_bits.h"
+#include "skills/laser_robot.h"
+#include "support/rounds.h"
 
 namespace hires::imagination::rollout_reach_test {
 namespace {
@@ -197,8 +200,82 @@ TEST(RolloutReachTest, WhatIsInTheWayIsInPhysics) {
             0.1);
 }
 
+/// A hall without walls, a robot whose laser looks in a plane that mills cross, and a way of 8 m.
+RolloutSetup Hall(const std::vector<ObjectState>& about) {
+  static const RolloutSetup empty = [] {
+    world::World hall;
+    hall.name = "hall";
+    hires::test_support::AddArea(&hall, "West", geometry::Lift({1.0, 2.0, 0.0}));
+    hires::test_support::AddArea(&hall, "East", geometry::Lift({9.0, 2.0, 0.0}));
+    hires::test_support::AddModel(&hall, hires::test_support::Mill());
+    hires::test_support::AddModel(&hall, hires::test_support::Mill("tower", 0.548));
+    hall.hash = hall.ComputeHash();
+    const robot::Robot robot = skills::test_support::RobotWithLaser({0.25, 0.0, 0.0});
+    RolloutSetup setup = RoomRollouts(hall, "mill", SomeUncertainty(), robot);
+    simulation::Sight sight;
+    sight.scans.emplace();
+    sight.scans->laser.num_beams = 90;
+    sight.scans->laser.range_max = 20.0;
+    sight.scans->period = 0.4;
+    setup.scene = simulation::MakeScene(hall, robot, {}, sight);
+    skills::MoveBaseParams driving;
+    driving.obstacle_layer.emplace();
+    setup.skills =
+        std::make_shared<const skills::SkillSet>(skills::MakeSkillSet(hall, robot, driving, {}));
+    return setup;
+  }();
+  RolloutSetup setup = empty;
+  auto& objects = setup.world_state.objects;
+  objects.insert(objects.end(), about.begin(), about.end());
+  return setup;
+}
+
+TEST(RolloutReachTest, WhatTheLaserSeesOnlyFromAfarIsLeftOut) {
+  std::vector<ObjectState> far;
+  for (int i = 0; i < 40; ++i) far.push_back(OnFloor(fmt::format("m{}", i), 1.0 + 0.2 * i, 12.0));
+  const RolloutSetup setup = Hall(far);
+  const RolloutResult result = Play(setup);
+  for (std::size_t i = 1; i < setup.world_state.objects.size(); ++i) {
+    EXPECT_EQ(result.final_world.objects[i].X_MO.translation,
+              setup.world_state.objects[i].X_MO.translation)
+        << "it would have settled in physics";
+  }
+  EXPECT_TRUE(SameOutcome(result, Play(Hall({}))));
+}
+
+TEST(RolloutReachTest, WhatTheLaserSeesChangesNoBitWhereverItIsLeftOut) {
+  const base::Rng seeds(34);
+  int num_left_out = 0, num_in = 0;
+  for (int round = 0; round < hires::test_support::Rounds(24); ++round) {
+    base::Rng rng = seeds.Fork(static_cast<std::uint64_t>(round));
+    const RolloutSetup setup = Possible([&] {
+      std::vector<ObjectState> about;
+      for (int i = 1 + rng.Index(8); i > 0; --i) {
+        about.push_back(
+            OnFloor(fmt::format("m{}", i), rng.Uniform(-4.0, 14.0), rng.Uniform(-7.0, 11.0)));
+      }
+      return Hall(about);
+    });
+    const RolloutResult narrow = Play(setup, round), wide = Play(Stirred(setup), round);
+    SCOPED_TRACE(round);
+    EXPECT_TRUE(SameOutcome(narrow, wide));
+    EXPECT_EQ(narrow.simulated, wide.simulated);
+    EXPECT_TRUE(narrow.final_robot == wide.final_robot);
+    for (std::size_t i = 1; i < setup.world_state.objects.size(); ++i) {
+      const bool is_in = narrow.final_world.objects[i].X_MO.translation !=
+                         setup.world_state.objects[i].X_MO.translation;
+      ++(is_in ? num_in : num_left_out);
+    }
+  }
+  EXPECT_GT(num_left_out, 5);
+  EXPECT_GT(num_in, 5);
+}
+
 TEST(RolloutReachTest, CancelledItGivesUp) {
   EXPECT_FALSE(PlayRollout(Start(), kFast, 0, {[] { return true; }, {}}).has_value());
+  int num_asked = 0;  // while the load settles already
+  EXPECT_FALSE(PlayRollout(Start(), kFast, 0, {[&] { return ++num_asked > 3; }, {}}).has_value());
+  EXPECT_EQ(num_asked, 4);
 }
 
 }  // namespace

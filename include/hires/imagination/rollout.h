@@ -56,7 +56,7 @@ void CheckSetupForAll(const RolloutSetup& setup, const std::vector<base::ActionC
 
 /// What a caller may want to know while a rollout is played; each may be empty.
 struct RolloutHooks {
-  std::function<bool()> cancelled;  ///< asked 20 times per simulated second
+  std::function<bool()> cancelled;  ///< asked 20 times per simulated second, or more often
   /// Called with every 20 Hz sample; must not change anything.
   std::function<void(const simulation::RobotSimulator&, double tilt)> on_sample;
   /// Called once, when it is over, with the names (lower case) of what the action was about and
@@ -80,8 +80,9 @@ struct RolloutHooks {
 /// with this seed and index), lets the load settle, runs the skill in lockstep with physics,
 /// counts. Gives up early, with nothing, when it is cancelled.
 ///
-/// What stands about is left out of physics until something comes near it; then the rollout begins
-/// again with it, and its hooks are called anew. So what was left out stands to the last bit as it
+/// What stands about is left out of physics until something comes near it, or it comes within what
+/// the base's laser is of use for (some 4 m); then the rollout begins again with it, and its hooks
+/// are called anew. So what was left out stands to the last bit as it
 /// did at the start and has changed nothing: what is far away does not settle, and a step that the
 /// solver has to repeat is not repeated for it. Actions that move arms or head, which look at
 /// objects, are played with everything, and so are starts in which something moves or that cannot

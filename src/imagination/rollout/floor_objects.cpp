@@ -3,8 +3,6 @@
 namespace hires::imagination {
 namespace {
 
-constexpr double kRange = 2.5;  // [m]
-
 bool Crosses(const world::ObjectModel& model, const geometry::Pose3& X_MO, double height) {
   for (const geometry::Collision& part : model.collisions)
     if (geometry::OutlineInBand(part.shape, X_MO * part.X_BS, height, height)) return true;

@@ -16,6 +16,8 @@ bool IsInLaserPlane(const simulation::Scene& scene, const world::ObjectState& ob
 /// believes them, up to 2.5 m away (obstacle_range of the PR2's costmaps).
 class FloorObjects {
  public:
+  static constexpr double kRange = 2.5;  ///< [m] from the base to an object's origin
+
   /// @param objects  as the simulator has them, by index.
   FloorObjects(const simulation::Scene& scene, const std::vector<world::ObjectState>& objects);
 

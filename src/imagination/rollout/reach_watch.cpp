@@ -1,9 +1,12 @@
 #include "imagination/rollout/reach_watch.h"
 
 #include <algorithm>
+#include <cmath>
 
+#include "hires/actions/catalogue.h"
 #include "hires/base/text.h"
 #include "hires/robot/posture.h"
+#include "hires/skills/move_base.h"
 #include "imagination/rollout/floor_objects.h"
 
 namespace hires::imagination {
@@ -17,6 +20,8 @@ constexpr double kAtEnds = 1.0;   // around start and goal: what is in at once
 constexpr double kStride = 0.1;   // between two places that are noted
 constexpr double kMargin = 0.1;   // that is left between what moves and what was left out
 constexpr double kCompany = 0.5;  // around what was come near to: all that is in then, too
+constexpr double kAside = 1.0;    // of the straight way to the goal: what may come in sight, is in
+constexpr double kNoise = 0.5;    // by which no range errs
 
 /// [m] How far its bounds reach from the body's origin, along each axis.
 Eigen::Vector3d FarthestOf(const geometry::Collision& shape) {
@@ -61,10 +66,28 @@ bool IsAtRest(const world::ObjectState& object) {
   return object.V_MO.linear.isZero(0.0) && object.V_MO.angular.isZero(0.0);
 }
 
+/// [m] of the base's laser from the base, seen from above.
+double LaserOffset(const RolloutSetup& setup) {
+  const robot::Robot& robot = setup.scene->robot;
+  const auto laser = robot.model.FindLink(robot.profile.laser_link);
+  if (!laser) return 0.0;
+  const auto X_RL =
+      robot::ForwardKinematics(robot.model, robot::PostureOf(robot, setup.robot_state.joints));
+  const geometry::Pose3& X_RB = X_RL[*robot.model.FindLink(robot.profile.base_link)];
+  return (X_RB.Inverse() * X_RL[*laser]).translation.head<2>().norm();
+}
+
 bool IsNamedBy(const base::ActionCall& action, const std::string& name) {
   return std::any_of(action.arguments.begin(), action.arguments.end(), [&](const auto& argument) {
     return base::ToLower(argument) == base::ToLower(name);
   });
+}
+
+bool IsAlwaysWithin(const RolloutReach& reach, const RolloutSetup& setup,
+                    const base::ActionCall& action, const world::ObjectState& object) {
+  const bool is_own = !object.attached_to.empty() || IsNamedBy(action, object.name);
+  return reach.is_everything || is_own || !IsAtRest(object) ||
+         !setup.scene->world.FindModel(object.model);  // which is refused by name
 }
 
 }  // namespace
@@ -80,29 +103,68 @@ bool RolloutReach::Touches(const Disc& other) const {
                      [&](const Disc& disc) { return Meet(disc, other); });
 }
 
+std::optional<double> SightOf(const RolloutSetup& setup, const base::ActionCall& action) {
+  const auto& own = actions::OwnActions().specs();
+  const auto spec = own.find(action.name);
+  const bool is_known =
+      spec != own.end() && spec->second.driving == actions::Driving::kRoundObstacles;
+  if (!is_known || setup.scene->self_localisation || !setup.skills->driving) return std::nullopt;
+  double sight = FloorObjects::kRange;
+  const skills::MoveBaseParams& params = setup.skills->driving->params;
+  if (params.obstacle_layer) {
+    sight = std::max(
+        {sight, params.obstacle_layer->obstacle_range, params.obstacle_layer->raytrace_range});
+  }
+  if (params.seen_place) sight = std::max(sight, params.seen_place->match.reach);
+  if (setup.scene->sight.scans) sight += setup.scene->sight.scans->laser.mixing_depth;
+  return sight + LaserOffset(setup) + kNoise;
+}
+
 bool IsWithin(const RolloutReach& reach, const RolloutSetup& setup, const base::ActionCall& action,
               const world::ObjectState& object) {
-  const bool is_own = !object.attached_to.empty() || IsNamedBy(action, object.name);
-  if (reach.is_everything || is_own || !IsAtRest(object)) return true;
-  if (!setup.scene->world.FindModel(object.model)) return true;  // refused by name
-  if (IsInLaserPlane(*setup.scene, object)) return true;         // seen from afar
-  return reach.Touches(DiscOf(setup, object));
+  if (IsAlwaysWithin(reach, setup, action, object)) return true;
+  Disc disc = DiscOf(setup, object);
+  if (IsInLaserPlane(*setup.scene, object)) {
+    const auto sight = SightOf(setup, action);
+    if (!sight) return true;
+    disc.radius += *sight;
+  }
+  return reach.Touches(disc);
 }
 
 ReachWatch::ReachWatch(const RolloutSetup& setup, const base::ActionCall& action)
     : setup_(setup),
       action_(action),
+      sight_(SightOf(setup, action)),
       robot_radius_(RadiusOf(*setup.scene, setup.robot_state.joints)),
       narrowed_(setup) {
-  reach_.is_everything = false;
+  reach_.is_everything = seen_.is_everything = false;
   reach_.discs.push_back({setup.robot_state.X_MB.position(), kAtEnds});
+  SeeTheWay(setup.robot_state.X_MB.position());
   for (const std::string& argument : action.arguments) {
     const auto area = setup.skills->areas.find(base::ToLower(argument));
     if (area != setup.skills->areas.end()) {
       reach_.discs.push_back({area->second.position(), kAtEnds});
+      SeeTheWay(area->second.position());
     }
   }
   BeginAgain();
+}
+
+/// What the laser may see on the straight way is in at once: beginning again costs more.
+void ReachWatch::SeeTheWay(const Vector2d& p_MGoal) {
+  if (!sight_) return;
+  const Vector2d begin = setup_.robot_state.X_MB.position(), way = p_MGoal - begin;
+  const int parts = std::max(1, static_cast<int>(std::ceil(way.norm() / kAside)));
+  for (int i = 0; i <= parts; ++i)
+    seen_.discs.push_back({begin + (1.0 * i / parts) * way, *sight_ + kAside});
+}
+
+bool ReachWatch::IsWithin(const world::ObjectState& object) const {
+  if (IsAlwaysWithin(reach_, setup_, action_, object)) return true;
+  const Disc disc = DiscOf(setup_, object);
+  if (reach_.Touches(disc)) return true;
+  return IsInLaserPlane(*setup_.scene, object) && (!sight_ || seen_.Touches(disc));
 }
 
 void ReachWatch::BeginAgain() {
@@ -111,8 +173,8 @@ void ReachWatch::BeginAgain() {
   left_out_.clear();
   radii_.clear();
   for (const world::ObjectState& object : setup_.world_state.objects) {
-    if (!IsWithin(reach_, setup_, action_, object)) {
-      left_out_.push_back(DiscOf(setup_, object));
+    if (!IsWithin(object)) {
+      left_out_.push_back({DiscOf(setup_, object), IsInLaserPlane(*setup_.scene, object)});
       continue;
     }
     const bool is_known = setup_.scene->world.FindModel(object.model) != nullptr;
@@ -137,10 +199,23 @@ bool ReachWatch::Note(std::size_t thing, const Vector2d& p_M, double radius) {
   noted = p_M;
   Disc disc{p_M, radius + kStride + kMargin};
   const bool is_near = std::any_of(left_out_.begin(), left_out_.end(),
-                                   [&](const Disc& other) { return Meet(disc, other); });
+                                   [&](const LeftOut& other) { return Meet(disc, other.disc); });
   if (is_near) disc.radius += kCompany;
   reach_.discs.push_back(disc);
-  return !is_near;
+  const bool is_robot = thing == 0;
+  const bool is_in_sight = is_robot && sight_ && !NoteSeen({p_M, *sight_ + kStride});
+  return !is_near && !is_in_sight;
+}
+
+/// What comes in sight has more around it each time, so that few beginnings do for any way.
+bool ReachWatch::NoteSeen(const Disc& robot) {
+  const bool is_seen = std::any_of(left_out_.begin(), left_out_.end(), [&](const LeftOut& other) {
+    return other.is_seen && Meet(robot, other.disc);
+  });
+  if (!is_seen) return true;
+  seen_.discs.push_back({robot.p_M, robot.radius + more_});
+  more_ *= 2.0;
+  return false;
 }
 
 world::WorldState ReachWatch::WithLeftOut(const world::WorldState& narrowed) const {

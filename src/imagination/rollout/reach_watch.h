@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "hires/imagination/rollout.h"
+#include "hires/imagination/rollout_reach.h"
 
 namespace hires::imagination {
 
@@ -31,20 +32,38 @@ class ReachWatch {
   world::WorldState WithLeftOut(const world::WorldState& narrowed) const;
 
  private:
+  /// What is left out. Seen is what stands in the laser's plane.
+  struct LeftOut {
+    RolloutReach::Disc disc;
+    bool is_seen;
+  };
+
+  void SeeTheWay(const Eigen::Vector2d& p_MGoal);
+  bool IsWithin(const world::ObjectState& object) const;
   bool Note(std::size_t thing, const Eigen::Vector2d& p_M, double radius);
+  bool NoteSeen(const RolloutReach::Disc& robot);
 
   const RolloutSetup& setup_;
   const base::ActionCall& action_;
+  const std::optional<double> sight_;
   double robot_radius_;
   bool is_touched_{false};
   RolloutReach reach_;
+  RolloutReach seen_;  // from where the robot was, or may be: what its laser's plane has there
+  double more_{1.0};   // [m] around where something came in sight that was left out
   RolloutSetup narrowed_;
-  std::vector<RolloutReach::Disc> left_out_;
+  std::vector<LeftOut> left_out_;
   std::vector<double> radii_;                          // of the narrowed objects
   std::vector<std::optional<Eigen::Vector2d>> noted_;  // the robot, then the objects
 };
 
-/// Whether a rollout that reached so far has this object in it.
+/// [m] From the base on: beyond, whatever stands in its laser's plane changes nothing, as it
+/// neither marks what is driven round nor hides what does. Nothing where that is not known: where
+/// the robot finds its place by all that the laser sees, and for actions other than our own drives
+/// round obstacles.
+std::optional<double> SightOf(const RolloutSetup& setup, const base::ActionCall& action);
+
+/// Whether a rollout that reached so far has this object in it, or may have seen it.
 bool IsWithin(const RolloutReach& reach, const RolloutSetup& setup, const base::ActionCall& action,
               const world::ObjectState& object);
 

@@ -66,7 +66,7 @@ class Player {
 
   /// Nothing if it is cancelled, or comes near what is left out.
   std::optional<RolloutResult> Play(const RolloutHooks& hooks) {
-    if (!Settle()) return std::nullopt;
+    if (!Settle(hooks)) return std::nullopt;
     LoadMonitor monitor(&simulator_, params_, standing_, purpose_, X_BOstart_);
     const double start = next_cycle_ = start_ = simulator_.time();
     skills::Status status;
@@ -78,6 +78,7 @@ class Player {
       if (status.progress != skills::Progress::kRunning) break;
       simulator_.Step();
       if (step % steps_per_look == 0) {
+        if (IsCancelled(hooks)) return std::nullopt;
         monitor.Look();
         if (!IsApart()) return std::nullopt;
         if (hooks.on_look) hooks.on_look(simulator_);
@@ -87,7 +88,6 @@ class Player {
         monitor.Look();
         result_.counts += monitor.Sample();
         if (hooks.on_sample) hooks.on_sample(simulator_, monitor.tilt());
-        if (hooks.cancelled && hooks.cancelled()) return std::nullopt;
       }
       if (simulator_.contact()) status = skills::Failed(Collision());
       if (monitor.is_lost()) status = skills::Failed(monitor.why_lost());
@@ -106,15 +106,21 @@ class Player {
   }
 
  private:
-  /// False if something comes near what is left out.
-  bool Settle() {
+  /// False if it is cancelled, or something comes near what is left out.
+  bool Settle(const RolloutHooks& hooks) {
     const long steps = std::lround(params_.settling_time / simulator_.time_step());
     const long steps_per_look = world::StepsPerLook(simulator_.time_step());
     for (long i = 0; i < steps; ++i) {
       if (i % steps_per_look == 0 && !IsApart()) return false;
+      if (IsCancelled(hooks)) return false;
       simulator_.Step();
     }
     return IsApart();
+  }
+
+  /// Asked at every step where there is much to step: a thousand loose things take 10 ms each time.
+  static bool IsCancelled(const RolloutHooks& hooks) {
+    return hooks.cancelled && hooks.cancelled();
   }
 
   bool IsSampleDue() {
@@ -172,14 +178,14 @@ class Player {
 
   bool IsApart() const { return watch_ == nullptr || watch_->Look(simulator_); }
 
-  /// False if something comes near what is left out.
+  /// False if it is cancelled, or something comes near what is left out.
   bool WatchAftermath(LoadMonitor* monitor, const RolloutHooks& hooks) {
     const double end = simulator_.time() + params_.aftermath;
     const long steps_per_look = world::StepsPerLook(simulator_.time_step());
     while (simulator_.time() < end && !monitor->IsSettled()) {
       PlayUntilNextLook(steps_per_look, *monitor, hooks);
       monitor->Look();
-      if (!IsApart()) return false;
+      if (!IsApart() || IsCancelled(hooks)) return false;
     }
     return IsApart();
   }
@@ -199,7 +205,8 @@ class Player {
     if (monitor.is_lost()) return;
     const double end = simulator_.time() + hooks.epilogue;
     const long steps_per_look = world::StepsPerLook(simulator_.time_step());
-    while (simulator_.time() < end) PlayUntilNextLook(steps_per_look, monitor, hooks);
+    while (simulator_.time() < end && !IsCancelled(hooks))
+      PlayUntilNextLook(steps_per_look, monitor, hooks);
   }
 
   void Conclude(const skills::Status& status, const LoadMonitor& monitor) {
