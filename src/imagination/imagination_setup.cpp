@@ -18,6 +18,7 @@
 #include "hires/skills/action_loader.h"
 #include "hires/world/object_catalogue.h"
 #include "hires/world/occupancy_grid.h"
+#include "imagination/area_file.h"
 #include "imagination/physics_hash.h"
 #include "imagination/uncertainty_layers.h"
 
@@ -123,24 +124,7 @@ physics::PhysicsParams ReadPhysics(ParamReader in) {
   return p;
 }
 
-constexpr double kWallHeight = 2.5;   // [m] of what a map has
-constexpr double kFarthest = 1000.0;  // [m] of an area, as in an SDF world
-
-void AddAreas(const std::vector<NamedArea>& areas, world::World* world) {
-  for (const NamedArea& area : areas) {
-    const std::string key = base::ToLower(area.name);
-    if (std::max(std::abs(area.X_MA.x), std::abs(area.X_MA.y)) > kFarthest) {
-      throw base::ConfigError(
-          fmt::format("area '{}' lies at {:g}, {:g} m, wanted at most {:g} m away", area.name,
-                      area.X_MA.x, area.X_MA.y, kFarthest));
-    }
-    if (!world->frames.emplace(key, geometry::Lift(area.X_MA)).second) {
-      throw base::ConfigError(fmt::format(
-          "area '{}' is there already, wanted a new name; call it otherwise", area.name));
-    }
-    world->frame_names[key] = area.name;
-  }
-}
+constexpr double kWallHeight = 2.5;  // [m] of what a map has
 
 /// An object of one's own must not become what others are called.
 void RefuseTaken(const world::ObjectModel& model, const std::string& path,
@@ -424,6 +408,12 @@ std::string ImaginationSetup::ModelOf(const std::string& instance_or_model) cons
   const std::string kin = translator.FindModel(instance_or_model);
   if (!kin.empty()) return kin;
   if (scene->world.FindModel(instance_or_model)) return instance_or_model;  // it says its box
+  if (instance_or_model.find_first_of("./") != std::string::npos) {
+    throw base::ConfigError(fmt::format(
+        "object '{}' is a file: load it with the scene (SetupConfig::extra_objects), and call it by "
+        "its model's name",
+        instance_or_model));
+  }
   std::vector<std::string> known;
   for (const auto& [name, model] : object_models) known.push_back(name);
   for (const auto& [name, model] : scene->world.models) {

@@ -90,12 +90,12 @@ TEST(ImagineStartTest, RefusesWhatItCannotRead) {
 }
 
 TEST(ReadAreaTest, ReadsOneTurnOfYawAndRefusesDegrees) {
-  EXPECT_EQ(ReadArea("kitchen:3.2,1.0,-1.57").X_MA.yaw, -1.57);
-  EXPECT_NO_THROW(ReadArea("kitchen:3.2,1.0,6.28"));
+  EXPECT_EQ(ReadAreas({"kitchen:3.2,1.0,-1.57"}).at(0).X_MA.yaw, -1.57);
+  EXPECT_NO_THROW(ReadAreas({"kitchen:3.2,1.0,6.28"}));
   for (const auto& [text, radians] :
        {std::pair("kitchen:3.2,1.0,90", "90 degrees are 1.5708"),
         std::pair("kitchen:3.2,1.0,-180", "-180 degrees are -3.1416")}) {
-    EXPECT_THAT(ConfigErrorOf([&] { ReadArea(text); }),
+    EXPECT_THAT(ConfigErrorOf([&] { ReadAreas({text}); }),
                 AllOf(HasSubstr(text), HasSubstr("yaw is in radians"), HasSubstr(radians)));
   }
 }

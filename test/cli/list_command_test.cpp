@@ -57,6 +57,25 @@ TEST(ListCommandTest, AreasComeWithWhatTheyAreForAndWhereTheyAre) {
   EXPECT_EQ(RowOf(workshop, "area", "atBench")["yaw"], 1.5708);
 }
 
+TEST(ListCommandTest, AreasOfAMapComeWithWhatItShowsThereAndItsExtent) {
+  const TemporaryFolder folder;
+  folder.Write("m.pgm", "P2 4 2 255 254 254 205 205 254 0 205 205\n");
+  const std::string map = folder.Write(
+      "m.yaml",
+      "image: m.pgm\nresolution: 0.5\norigin: [1, 2, 0]\nnegate: 0\noccupied_thresh: 0.65\n"
+      "free_thresh: 0.196\n");
+  const std::string goals = folder.Write("goals.yaml", "a: [1.2, 2.2, 0.5]\nb: [1.7, 2.2, 0]\n");
+  const auto rows = Listed({"areas", "--map", map, "--area", goals, "--area", "c:2.7,2.7,0",
+                            "--area", "d:9,9,0", "--robot", HIRES_SOURCE_DIR "/urdf/cart.urdf"});
+  EXPECT_EQ(RowOf(rows, "area", "a")["on the map"], "free");
+  EXPECT_EQ(RowOf(rows, "area", "b")["on the map"], "occupied");
+  EXPECT_EQ(RowOf(rows, "area", "c")["on the map"], "unknown");
+  EXPECT_EQ(RowOf(rows, "area", "d")["on the map"], "outside");
+  EXPECT_EQ(RowOf(rows, "area", "(upper right corner)")["x"], 3.0);
+  EXPECT_EQ(RowOf(rows, "area", "(lower left corner)")["y"], 2.0);
+  EXPECT_THAT(List({"areas", "--map", map, "--world", "w.world"}).err, HasSubstr("excludes"));
+}
+
 TEST(ListCommandTest, ObjectsComeWithMassAndSize) {
   const auto mill = RowOf(Listed({"objects"}), "object", "peppermill1");
   EXPECT_EQ(mill["model"], "peppermill_thesis");

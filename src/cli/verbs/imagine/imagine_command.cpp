@@ -60,10 +60,9 @@ void AddOptions(CLI::App* app, ImagineOptions* o) {
       ->check(NumberBetween(1, 256));
   CLI::Option* world = app->add_option("--world", o->world, "another SDF world");
   app->add_option("--map", o->map,
-                  "a map_server map (YAML with PGM or PNG) whose walls are the world")
+                  "a map_server map (its YAML) whose walls are the world")
       ->excludes(world);
-  app->add_option("--area", o->areas, "one more area, NAME:x,y,yaw [m, m, rad]; may be repeated")
-      ->allow_extra_args(false);
+  AddAreaOption(app, &o->areas);
   app->add_option("--robot", o->robot, "another robot: profile (.yaml) or URDF (.urdf)");
   app->add_option("--objects", o->objects, "another catalogue of objects (YAML)");
   app->add_option("--scene", o->scene, "another scene file instead of config/scene.yaml");
@@ -131,7 +130,7 @@ ImagineQuery MakeQuery(const ImagineOptions& o) {
   imagination::OverridePaths(o.world, o.robot, o.objects, o.uncertainty, &query.setup);
   query.setup.map = o.map;
   SetSensing(o, &query.setup);
-  for (const std::string& area : o.areas) query.setup.areas.push_back(ReadArea(area));
+  query.setup.areas = ReadAreas(o.areas);
   SetStart(o, &query);
   query.own_scene = !(o.world + o.map + o.robot + o.objects + o.scene).empty() ||
                     !o.areas.empty() || !query.setup.extra_objects.empty();

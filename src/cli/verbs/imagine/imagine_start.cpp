@@ -5,10 +5,12 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <set>
 
 #include "hires/base/error.h"
 #include "hires/base/text.h"
+#include "imagination/area_file.h"
 
 namespace hires::cli {
 namespace {
@@ -96,6 +98,30 @@ void ReadInHand(const std::string& text, const actions::ActionSpec& action, Imag
       {"HasArmPosture", {parts[1], drives ? "ArmCarryPosture" : "ArmToSidePosture"}});
 }
 
+bool IsAreaFile(const std::string& text) {
+  const std::filesystem::path path(text);
+  const std::string ending = base::ToLower(path.extension().string());
+  std::error_code error;
+  return ending == ".yaml" || ending == ".yml" || std::filesystem::is_regular_file(path, error);
+}
+
+imagination::NamedArea ReadArea(const std::string& text) {
+  constexpr char kWanted[] =
+      "NAME:x,y,yaw [m, m, rad], as kitchen:3.2,1.0,1.57, or a YAML file of goals";
+  const auto parts = PartsOf("--area", text, 2, kWanted);
+  const std::vector<double> numbers = NumbersIn(parts[1]);
+  if (numbers.size() != 3) {
+    throw base::ConfigError(fmt::format("--area '{}': wanted {}", text, kWanted));
+  }
+  if (std::abs(numbers[2]) > 2.0 * M_PI) {
+    throw base::ConfigError(
+        fmt::format("--area '{}': yaw is in radians, wanted between -2 pi and 2 pi; {:g} degrees "
+                    "are {:.5g}",
+                    text, numbers[2], numbers[2] * M_PI / 180.0));
+  }
+  return {parts[0], {numbers[0], numbers[1], numbers[2]}};
+}
+
 }  // namespace
 
 std::vector<base::Atom> ImagineStart::AllAtoms() const {
@@ -144,20 +170,24 @@ void AddStartOptions(CLI::App* app, StartOptions* o) {
       ->allow_extra_args(false);
 }
 
-imagination::NamedArea ReadArea(const std::string& text) {
-  constexpr char kWanted[] = "NAME:x,y,yaw [m, m, rad], as kitchen:3.2,1.0,1.57";
-  const auto parts = PartsOf("--area", text, 2, kWanted);
-  const std::vector<double> numbers = NumbersIn(parts[1]);
-  if (numbers.size() != 3) {
-    throw base::ConfigError(fmt::format("--area '{}': wanted {}", text, kWanted));
+std::vector<imagination::NamedArea> ReadAreas(const std::vector<std::string>& texts) {
+  std::vector<imagination::NamedArea> areas;
+  for (const std::string& text : texts) {
+    if (!IsAreaFile(text)) {
+      areas.push_back(ReadArea(text));
+      continue;
+    }
+    const auto more = imagination::ReadAreaFile(text);
+    areas.insert(areas.end(), more.begin(), more.end());
   }
-  if (std::abs(numbers[2]) > 2.0 * M_PI) {
-    throw base::ConfigError(
-        fmt::format("--area '{}': yaw is in radians, wanted between -2 pi and 2 pi; {:g} degrees "
-                    "are {:.5g}",
-                    text, numbers[2], numbers[2] * M_PI / 180.0));
-  }
-  return {parts[0], {numbers[0], numbers[1], numbers[2]}};
+  return areas;
+}
+
+void AddAreaOption(CLI::App* app, std::vector<std::string>* areas) {
+  app->add_option("--area,--areas", *areas,
+                  "one more area, NAME:x,y,yaw [m, m, rad], or a YAML file of goals or waypoints; "
+                  "may be repeated")
+      ->allow_extra_args(false);
 }
 
 ImagineStart ReadStart(const StartOptions& options, const std::string& action,

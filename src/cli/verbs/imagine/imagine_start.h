@@ -38,9 +38,13 @@ void AddStartOptions(CLI::App* app, StartOptions* options);
 ImagineStart ReadStart(const StartOptions& options, const std::string& action,
                        const actions::Catalogue& catalogue);
 
-/// "kitchen:3.2,1.0,1.57": name, x and y [m], yaw [rad] of one turn at most.
+/// "kitchen:3.2,1.0,1.57": name, x and y [m], yaw [rad] of one turn at most; or a file of goals
+/// (imagination::ReadAreaFile), told by its ending .yaml or .yml, or by being there.
 /// @throws base::ConfigError saying what is wanted.
-imagination::NamedArea ReadArea(const std::string& text);
+std::vector<imagination::NamedArea> ReadAreas(const std::vector<std::string>& texts);
+
+/// Adds --area to a verb.
+void AddAreaOption(CLI::App* app, std::vector<std::string>* areas);
 
 /// A robot that remembers an object somewhere may well be asked to take it and not find it; whoever
 /// types a start by hand has forgotten it.

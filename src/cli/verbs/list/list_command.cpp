@@ -9,9 +9,11 @@
 #include <functional>
 #include <map>
 #include <nlohmann/json.hpp>
+#include <optional>
 
 #include "cli/exit_code.h"
 #include "cli/list_rows.h"
+#include "cli/verbs/imagine/imagine_start.h"
 #include "hires/base/error.h"
 #include "hires/base/param_reader.h"
 #include "hires/base/text.h"
@@ -20,6 +22,8 @@
 #include "hires/skills/action_loader.h"
 #include "hires/translation/areas.h"
 #include "hires/world/object_catalogue.h"
+#include "hires/world/occupancy_grid.h"
+#include "imagination/area_file.h"
 #include "reports/text/report_json.h"
 #include "sim_robot/scenario.h"
 
@@ -83,22 +87,58 @@ std::string Spelled(const std::string& name, const Spelling& spelling) {
   return found == spelling.end() ? name : found->second;
 }
 
+/// What the map shows at an area.
+std::string PlaceOn(const world::OccupancyGrid& map, const Eigen::Vector2d& p) {
+  const Eigen::Vector2d cell = (p - map.origin) / map.resolution;
+  const bool is_inside = cell.minCoeff() >= 0.0 && cell.x() < map.width && cell.y() < map.height;
+  if (!is_inside) return "outside";
+  switch (map.at(static_cast<int>(cell.x()), static_cast<int>(cell.y()))) {
+    case world::Cell::kFree:
+      return "free";
+    case world::Cell::kOccupied:
+      return "occupied";
+    default:
+      return "unknown";
+  }
+}
+
+ordered_json AreaRow(const std::string& name, const std::string& kind, const std::string& frame,
+                     const Eigen::Vector3d& p, double yaw) {
+  return {{"area", name},        {"for", kind},         {"frame", frame},     {"x", Rounded(p.x())},
+          {"y", Rounded(p.y())}, {"z", Rounded(p.z())}, {"yaw", Rounded(yaw)}};
+}
+
+/// What the map shows there, and its own corners.
+void AddMapColumns(const world::OccupancyGrid& map, Rows* rows) {
+  for (ordered_json& row : *rows) {
+    const Eigen::Vector2d p(row["x"].get<double>(), row["y"].get<double>());
+    row["on the map"] = row["frame"] == "map" ? PlaceOn(map, p) : "";
+  }
+  const Eigen::Vector2d upper =
+      map.origin + map.resolution * Eigen::Vector2d(map.width, map.height);
+  const auto add_corner = [&](const std::string& name, const Eigen::Vector2d& p) {
+    rows->push_back(AreaRow(name, "extent", "map", {p.x(), p.y(), 0.0}, 0.0));
+    rows->back()["on the map"] = "";
+  };
+  add_corner("(lower left corner)", map.origin);
+  add_corner("(upper right corner)", upper);
+}
+
 Rows Areas(const Sources& sources) {
-  const world::World world = world::LoadWorld(sources.setup.world);
+  std::optional<world::OccupancyGrid> map;
+  if (!sources.setup.map.empty()) map = world::LoadMap(sources.setup.map);
+  world::World world = map ? world::World() : world::LoadWorld(sources.setup.world);
+  imagination::AddAreas(sources.setup.areas, &world);
   const robot::Robot robot = robot::LoadAnyRobot(sources.setup.robot);
   Spelling spelling{world.frame_names.begin(), world.frame_names.end()};
   spelling.emplace(translation::kTrayArea, "trayArea1");  // as the ontology's knowledge spells it
   Rows rows;
   for (const translation::Area& area : translation::AreasOf(world, robot).all) {
-    const Eigen::Vector3d p = area.X_FA.translation;
-    rows.push_back({{"area", Spelled(area.name, spelling)},
-                    {"for", KindOf(area.kind)},
-                    {"frame", area.link.empty() ? "map" : area.link},
-                    {"x", Rounded(p.x())},
-                    {"y", Rounded(p.y())},
-                    {"z", Rounded(p.z())},
-                    {"yaw", Rounded(geometry::YawOf(area.X_FA.rotation))}});
+    rows.push_back(AreaRow(Spelled(area.name, spelling), KindOf(area.kind),
+                           area.link.empty() ? "map" : area.link, area.X_FA.translation,
+                           geometry::YawOf(area.X_FA.rotation)));
   }
+  if (map) AddMapColumns(*map, &rows);
   return rows;
 }
 
@@ -127,6 +167,7 @@ Rows Objects(const Sources& sources) {
   for (const auto& [instance, model] : world::LoadCatalogueModels(sources.setup.objects)) {
     rows.push_back(ObjectRow(instance, *model, "catalogue"));
   }
+  if (!sources.setup.map.empty()) return rows;  // a map has walls alone
   const world::World world = world::LoadWorld(sources.setup.world);
   for (const world::ObjectState& object : world.initial.objects) {
     rows.push_back(ObjectRow(object.name, *world.ModelOf(object), "world"));
@@ -270,6 +311,8 @@ Sources SourcesOf(const ListOptions& o, const std::string& package_folder) {
       imagination::ReadClientConfig(package_folder + "/config/imagination_client.yaml");
   sources.setup = imagination::ReadSetupConfig(o.scene.empty() ? client.scene : o.scene);
   imagination::OverridePaths(o.world, o.robot, o.objects, "", &sources.setup);
+  sources.setup.map = o.map;
+  sources.setup.areas = ReadAreas(o.areas);
   sources.setup.action_libraries = o.action_libraries;
   return sources;
 }
@@ -306,7 +349,11 @@ void AddListVerb(CLI::App* app, bool with_tasks, ListOptions* o) {
   const std::string kinds = base::Join(Kinds(with_tasks), ", ");
   CLI::App* verb = app->add_subcommand("list", "names that other verbs take: " + kinds);
   verb->add_option("what", o->what, kinds);
-  verb->add_option("--world", o->world, "another SDF world: its areas and objects");
+  CLI::Option* world =
+      verb->add_option("--world", o->world, "another SDF world: its areas and objects");
+  verb->add_option("--map", o->map, "a map_server map (its YAML) instead of a world: its extent")
+      ->excludes(world);
+  AddAreaOption(verb, &o->areas);
   verb->add_option("--robot", o->robot,
                    "another robot, profile (.yaml) or URDF: its tray, motion sets and postures");
   verb->add_option("--objects", o->objects, "another catalogue of objects (YAML)");

@@ -14,8 +14,8 @@ namespace hires::cli {
 
 /// What was typed behind `hires list`.
 struct ListOptions {
-  std::string what, scene, world, robot, objects, domain, json;
-  std::vector<std::string> action_libraries;
+  std::string what, scene, world, map, robot, objects, domain, json;
+  std::vector<std::string> action_libraries, areas;
   CLI::App* verb{nullptr};
 };
 

@@ -13,6 +13,7 @@
 
 #include "cli/drive_log.h"
 #include "cli/exit_code.h"
+#include "cli/verbs/imagine/imagine_start.h"
 #include "cli/whole_number.h"
 #include "hires/base/error.h"
 #include "hires/base/text.h"
@@ -168,23 +169,25 @@ std::optional<std::pair<MapResult, Judgement>> DriveAndMap(const MapOptions& opt
   imagination::SetupConfig files = imagination::ReadSetupConfig(
       options.scene.empty() ? package_folder + "/config/scene.yaml" : options.scene);
   imagination::OverridePaths(options.world, options.robot, {}, "none", &files);
+  files.map = options.map;
+  files.areas = ReadAreas(options.areas);
+  const std::string world = files.map.empty() ? files.world : files.map;
   files.localisation = "drawn";  // it is told, and exactly so: nothing is uncertain
   const imagination::ImaginationSetup setup = imagination::LoadImaginationSetup(files);
   sim_robot::MapDriveParams params;
   params.senses = simulation::LoadSelfLocalisation(files.self_localisation);
   params.motion_set = options.motion_set;
   params.seed = options.seed;
-  const auto drive =
-      sim_robot::DriveForMap(setup, params, "driving through " + files.world, cancelled);
+  const auto drive = sim_robot::DriveForMap(setup, params, "driving through " + world, cancelled);
   if (!drive) return std::nullopt;
   if (!options.log_output.empty()) localisation::WriteCarmenLog(drive->log, options.log_output);
   if (!options.truth_output.empty())
     localisation::WriteTumTrajectory(drive->truth, options.truth_output);
   mapping::MapperParams mapper = ParamsOf(options);
   mapper.X_MBegin = drive->truth.front().X_MB;
-  MapResult result = mapping::MakeMap(drive->log, mapper, "mapping " + files.world);
+  MapResult result = mapping::MakeMap(drive->log, mapper, "mapping " + world);
   Judgement judgement = Judge(*drive, result, JudgesMap(setup, params.senses), options.max_range);
-  judgement.world = files.world;
+  judgement.world = world;
   return std::make_pair(std::move(result), std::move(judgement));
 }
 
@@ -202,6 +205,10 @@ void AddDrivenOptions(CLI::App* verb, MapOptions* o) {
     verb->add_option(name, *value, help)->needs(drive);
   };
   add("--world", &o->world, "with --drive: another world (SDF) than the scene's");
+  add("--map", &o->map, "with --drive: a map_server map (its YAML) whose walls are the world");
+  verb->get_option("--map")->excludes(verb->get_option("--world"));
+  AddAreaOption(verb, &o->areas);
+  verb->get_option("--area")->needs(drive);
   add("--robot", &o->robot, "with --drive: another robot, profile (.yaml) or URDF (.urdf)");
   add("--scene", &o->scene, "with --drive: another scene file instead of config/scene.yaml");
   add("--motion-set", &o->motion_set, "with --drive: of the robot's profile; default: fast");

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <functional>
 #include <string>
+#include <vector>
 
 #include "cli/drive_log.h"
 
@@ -16,7 +17,8 @@ namespace hires::cli {
 struct MapOptions {
   DriveOptions drive;
   bool is_driven{false};  ///< by a simulated robot; these are of it alone
-  std::string world, robot, scene, motion_set{"fast"}, log_output, truth_output;
+  std::string world, map, robot, scene, motion_set{"fast"}, log_output, truth_output;
+  std::vector<std::string> areas;
   std::uint64_t seed{1};
   std::string output, trajectory, json;
   double resolution{0.05};  ///< [m]

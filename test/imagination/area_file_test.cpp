@@ -1,0 +1,165 @@
+#include "imagination/area_file.h"
+
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "hires/base/error.h"
+#include "hires/base/rng.h"
+#include "support/log_catcher.h"
+#include "support/rounds.h"
+#include "support/temporary_folder.h"
+
+namespace hires::imagination::area_file_test {
+namespace {
+
+using test_support::LogCatcher;
+using test_support::Rounds;
+using test_support::TemporaryFolder;
+using testing::AllOf;
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+
+class AreaFileTest : public testing::Test {
+ protected:
+  std::vector<NamedArea> Read(const std::string& yaml) {
+    return ReadAreaFile(folder_.Write("goals.yaml", yaml));
+  }
+  std::string ErrorOf(const std::string& yaml) {
+    try {
+      Read(yaml);
+    } catch (const base::ConfigError& error) {
+      return error.what();
+    }
+    return "";
+  }
+  TemporaryFolder folder_;
+};
+
+void ExpectArea(const NamedArea& area, const std::string& name, double x, double y, double yaw) {
+  EXPECT_EQ(area.name, name);
+  EXPECT_NEAR(area.X_MA.x, x, 1e-9) << name;
+  EXPECT_NEAR(area.X_MA.y, y, 1e-9) << name;
+  EXPECT_NEAR(area.X_MA.yaw, yaw, 1e-6) << name;
+}
+
+TEST_F(AreaFileTest, NamesWithNumbersAreTheSimplestForm) {
+  const auto areas = Read("kitchen: [3.2, 1.0, 1.57]\ndock: {x: 0, y: -1, theta: 0.5}\n");
+  ASSERT_EQ(areas.size(), 2u);
+  ExpectArea(areas[0], "kitchen", 3.2, 1.0, 1.57);
+  ExpectArea(areas[1], "dock", 0.0, -1.0, 0.5);
+}
+
+TEST_F(AreaFileTest, ListsAreReadWithNamesOrWithout) {
+  const auto areas = Read(
+      "waypoints:\n- [1, 2, 0.5]\n- {name: bench, x: 3, y: 4, yaw_deg: 90}\n"
+      "- shelf: [5, 6, -1]\n- [7, 8, 0]\n");
+  ASSERT_EQ(areas.size(), 4u);
+  ExpectArea(areas[0], "goal1", 1, 2, 0.5);
+  ExpectArea(areas[1], "bench", 3, 4, M_PI / 2.0);
+  ExpectArea(areas[2], "shelf", 5, 6, -1);
+  ExpectArea(areas[3], "goal2", 7, 8, 0);
+}
+
+TEST_F(AreaFileTest, PosesOfGeometryMsgsAreReadUnderAnyWrapper) {
+  const std::string pose =
+      "position: {x: 1.0, y: 2.0, z: 0.0}, orientation: {x: 0, y: 0, z: 0.7071068, w: 0.7071068}";
+  for (const std::string& yaml :
+       {"a: {" + pose + "}\n", "goals:\n- name: a\n  pose: {" + pose + "}\n",
+        "- name: a\n  target_pose:\n    header: {seq: 3, frame_id: map}\n    pose: {" + pose +
+            "}\n",
+        "a: {header: {frame_id: /map}, pose: {pose: {" + pose + "}, covariance: [0, 0, 0]}}\n",
+        "- meta: {node: x}\n  node:\n    name: a\n    verts: [{x: 9, y: 9}]\n    pose: {" + pose +
+            "}\n"}) {
+    const auto areas = Read(yaml);
+    ASSERT_EQ(areas.size(), 1u) << yaml;
+    ExpectArea(areas[0], "a", 1.0, 2.0, M_PI / 2.0);
+  }
+}
+
+TEST_F(AreaFileTest, WaypointsOfNav2sPanelHaveWFirst) {
+  const auto areas = Read(
+      "waypoints:\n  waypoint0:\n    pose: [1.0, 2.0, 0.0]\n    orientation: [0.8775826, 0, 0, "
+      "0.4794255]\n");
+  ASSERT_EQ(areas.size(), 1u);
+  ExpectArea(areas[0], "waypoint0", 1.0, 2.0, 1.0);
+}
+
+TEST_F(AreaFileTest, SeveralDocumentsAreWhatRostopicEchoPrints) {
+  const std::string one =
+      "header:\n  seq: 1\n  frame_id: \"map\"\npose:\n  position: {x: 1, y: 2, z: 0}\n"
+      "  orientation: {x: 0.0, y: 0.0, z: 0.0, w: 1.0}\n---\n";
+  const auto areas = Read(one + one);
+  ASSERT_EQ(areas.size(), 2u);
+  ExpectArea(areas[1], "goal2", 1, 2, 0);
+}
+
+TEST_F(AreaFileTest, WhatIsAssumedOrLeftOutIsSaidOnceForEachKind) {
+  const LogCatcher log(base::LogLevel::kWarn);
+  Read("a: [1, 2]\nb: [3, 4]\nc: {position: {x: 1, y: 1, z: 0.4}, orientation: {w: 1.0}}\n");
+  EXPECT_THAT(log.lines, ElementsAre(AllOf(HasSubstr("goals.yaml:1:"),
+                                           HasSubstr("have a yaw of 0 (2 in all)")),
+                                     AllOf(HasSubstr("goals.yaml:3:"), HasSubstr("heights"))));
+}
+
+TEST_F(AreaFileTest, AllThatIsWrongIsToldWithItsLine) {
+  EXPECT_THAT(ErrorOf("a: [1, 2, 90]\nb: [1, 2, 3, 4]\nA: [0, 0, 0]\nc: {x: one, y: 2}\n"),
+              AllOf(HasSubstr("4 things are wrong"), HasSubstr("goals.yaml:1: yaw is in radians"),
+                    HasSubstr("goals.yaml:2: a list of 4"), HasSubstr("goals.yaml:3: 'A' is there"),
+                    HasSubstr("goals.yaml:4: has no position")));
+  EXPECT_THAT(ErrorOf("a: {header: {frame_id: odom}, pose: {position: {x: 1, y: 2}}}\n"),
+              HasSubstr("wanted map"));
+  EXPECT_THAT(ErrorOf("\"a,b\": [1, 2, 0]\n"), HasSubstr("rename it"));
+  EXPECT_THAT(ErrorOf("image: m.pgm\nresolution: 0.05\norigin: [0, 0, 0]\n"), HasSubstr("--map"));
+  EXPECT_THAT(ErrorOf("rate: 10\n"), HasSubstr("has no goal"));
+  EXPECT_THAT(ErrorOf(""), HasSubstr("has no goal"));
+  EXPECT_THAT(ErrorOf("a: [\n"), HasSubstr("no valid YAML"));
+}
+
+TEST_F(AreaFileTest, EveryFormSaysTheSamePlaces) {
+  for (int seed = 0; seed < Rounds(60); ++seed) {
+    base::Rng rng = base::Rng(7).Fork(seed);
+    std::vector<geometry::Pose2> poses;
+    std::string by_name, in_a_list, as_poses, by_panel;
+    for (int i = 1 + rng.Index(5); i > 0; --i) {
+      const geometry::Pose2 X{rng.Uniform(-50, 50), rng.Uniform(-50, 50), rng.Uniform(-3.1, 3.1)};
+      const std::string name = fmt::format("p{}", poses.size());
+      const double z = std::sin(X.yaw / 2), w = std::cos(X.yaw / 2);
+      by_name += fmt::format("{}: [{}, {}, {}]\n", name, X.x, X.y, X.yaw);
+      in_a_list += fmt::format("- {{name: {}, x: {}, y: {}, yaw: {}}}\n", name, X.x, X.y, X.yaw);
+      as_poses += fmt::format(
+          "- name: {}\n  pose:\n    position: {{x: {}, y: {}, z: 0.0}}\n"
+          "    orientation: {{x: 0.0, y: 0.0, z: {}, w: {}}}\n",
+          name, X.x, X.y, z, w);
+      by_panel += fmt::format("  {}:\n    pose: [{}, {}, 0.0]\n    orientation: [{}, 0, 0, {}]\n",
+                              name, X.x, X.y, w, z);
+      poses.push_back(X);
+    }
+    for (const std::string& yaml :
+         {by_name, in_a_list, as_poses, "waypoints:\n" + by_panel, "goals:\n" + in_a_list}) {
+      const auto areas = Read(yaml);
+      ASSERT_EQ(areas.size(), poses.size()) << yaml;
+      for (std::size_t i = 0; i < poses.size(); ++i) {
+        ExpectArea(areas[i], fmt::format("p{}", i), poses[i].x, poses[i].y, poses[i].yaw);
+      }
+    }
+  }
+}
+
+TEST_F(AreaFileTest, BombsAreRefusedAndBounded) {
+  std::string deep = "a: ";
+  for (int i = 0; i < 100; ++i) deep += "{b: ";
+  deep += "[1, 2, 0]" + std::string(100, '}') + "\n";
+  EXPECT_THAT(ErrorOf(deep), HasSubstr("too deep"));
+  std::string laughs = "a0: &a0 [{c: [1, 2, 0]}]\n";
+  for (int i = 1; i < 20; ++i) {
+    laughs += fmt::format("a{0}: &a{0} [*a{1}, *a{1}, *a{1}, *a{1}]\n", i, i - 1);
+  }
+  EXPECT_THAT(ErrorOf(laughs), HasSubstr("too deep or too long"));
+}
+
+}  // namespace
+}  // namespace hires::imagination::area_file_test
