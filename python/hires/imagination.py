@@ -22,7 +22,8 @@ _OUTCOMES = {getattr(ImagineResult, name): name.lower()
 
 
 class ImaginationError(RuntimeError):
-    """Nothing was imagined: nobody is there to ask, or the request cannot be played."""
+    """Nothing was imagined: no master or nobody who serves the action, a client that went away during the
+    request, or a request that cannot be played. The message says which, and what to do."""
 
 
 @dataclass(frozen=True)

@@ -22,7 +22,9 @@ world::ObjectState MakeObject(const ImaginationSetup& setup, const std::string& 
                               const geometry::Pose3& X_MO) {
   world::ObjectState object;
   object.name = base::ToLower(name);
-  object.model = setup.ModelOf(name);
+  // Two cartons of a world are of one model, which has the name of the first.
+  const world::ObjectState* own = setup.scene->world.initial.Find(name);
+  object.model = own != nullptr ? own->model : setup.ModelOf(name);
   object.X_MO = X_MO;
   return object;
 }

@@ -7,6 +7,7 @@
 #include <array>
 #include <cstdint>
 #include <map>
+#include <variant>
 
 #include "hires/base/short_text.h"
 #include "hires/base/text.h"
@@ -39,7 +40,9 @@ const std::map<std::string, Wanted>& AllWanted() {
       {"robot", text},
       {"objects", names},
       {"catalogue", text},
-      {"areas", {"{name: (x, y, yaw)}", Fits<std::map<std::string, std::array<double, 3>>>}},
+      {"areas",
+       {"{name: (x, y, yaw)}, or the name of a file",
+        Fits<std::variant<std::string, std::map<std::string, std::array<double, 3>>>>}},
       {"uncertainty", text},
       {"actions", names},
       {"config", text},

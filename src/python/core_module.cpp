@@ -6,6 +6,7 @@
 #include <pybind11/stl.h>
 
 #include <limits>
+#include <variant>
 
 #include "hires/base/error.h"
 #include "python/answer.h"
@@ -251,11 +252,13 @@ void BindRecording(py::module_* m) {
       .def_property_readonly("falls", [](const RolloutRecording& r) { return r.result.falls; });
 }
 
+using AreasByName = std::map<std::string, std::array<double, 3>>;
+using AreasGiven = std::variant<std::string, AreasByName>;  // or a file
+
 Scene MakeScene(const std::string& world, const std::string& map, const std::string& robot,
                 const std::vector<std::string>& objects, const std::string& catalogue,
-                const std::map<std::string, std::array<double, 3>>& areas,
-                const std::string& uncertainty, const std::vector<std::string>& actions,
-                const std::string& config) {
+                const AreasGiven& areas, const std::string& uncertainty,
+                const std::vector<std::string>& actions, const std::string& config) {
   SceneFiles files;
   files.config = config.empty() ? PackageFolder() + "/config/imagination_client.yaml" : config;
   files.world = world;
@@ -263,7 +266,11 @@ Scene MakeScene(const std::string& world, const std::string& map, const std::str
   files.robot = robot;
   files.objects = objects;
   files.catalogue = catalogue;
-  files.areas = areas;
+  if (const auto* file = std::get_if<std::string>(&areas)) {
+    files.area_files.push_back(*file);
+  } else {
+    files.areas = std::get<AreasByName>(areas);
+  }
   files.uncertainty = uncertainty;
   files.actions = actions;
   const py::gil_scoped_release unlocked;
@@ -304,7 +311,8 @@ constexpr char kImagineHelp[] =
     "of names\n"
     "to choose from; all combinations are played. robot_at: the area where the robot stands; "
     "on_tray:\n"
-    "objects; facts: what else holds, 'Holding(rightArm1, mug1)'; put: {object: (x, y, z, yaw)} in "
+    "objects, each by its name or its file; facts: what else holds, 'Holding(rightArm1, mug1)'; "
+    "put: {object: (x, y, z, yaw)} in "
     "the map\n"
     "[m, rad]. Zeros and '' stand for what the configuration says; threads=0: one per core. Same "
     "seed,\n"
@@ -316,14 +324,14 @@ using Poses = std::map<std::string, std::array<double, 4>>;
 void BindScene(py::module_* m) {
   py::class_<Scene>(*m, "Scene", "World, robot and objects, loaded once for many requests.")
       .def(py::init(&MakeScene), py::kw_only(), "world"_a = "", "map"_a = "", "robot"_a = "",
-           "objects"_a = std::vector<std::string>(), "catalogue"_a = "",
-           "areas"_a = std::map<std::string, std::array<double, 3>>(), "uncertainty"_a = "",
-           "actions"_a = std::vector<std::string>(), "config"_a = "",
+           "objects"_a = std::vector<std::string>(), "catalogue"_a = "", "areas"_a = AreasByName(),
+           "uncertainty"_a = "", "actions"_a = std::vector<std::string>(), "config"_a = "",
            "Files: world (SDF) or map (map_server YAML), robot (profile or URDF), objects (models "
            "beside\n"
            "those of the catalogue), uncertainty ('none': nothing is uncertain), actions "
            "(libraries).\n"
-           "areas: {name: (x, y, yaw)} [m, rad]. What is not named is as in the package's "
+           "areas: {name: (x, y, yaw)} [m, rad], or a YAML file of goals. What is not named is as "
+           "in the package's "
            "configuration.")
       .def_property_readonly("areas", &Scene::Areas, "Where the robot can stand.")
       .def_property_readonly("objects", &Scene::Objects, "What can be put somewhere.")

@@ -3,11 +3,14 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <functional>
 #include <memory>
 #include <thread>
 
 #include "hires/base/error.h"
 #include "hires/base/text.h"
+#include "hires/world/object_catalogue.h"
+#include "imagination/area_file.h"
 
 namespace hires::python {
 namespace {
@@ -16,6 +19,11 @@ std::string Trimmed(const std::string& text) {
   const auto begin = text.find_first_not_of(" \t");
   if (begin == std::string::npos) return "";
   return text.substr(begin, text.find_last_not_of(" \t") - begin + 1);
+}
+
+/// What no name of an object has, and every file of one.
+bool IsFile(const std::string& object) {
+  return object.find('/') != std::string::npos || object.find('.') != std::string::npos;
 }
 
 base::Atom ParseFact(const std::string& text) {
@@ -35,10 +43,16 @@ base::Atom ParseFact(const std::string& text) {
   return atom;
 }
 
-std::vector<base::Atom> AtomsOf(const StartOfAction& start) {
+/// @param name_of  what an object is called that is given by its file.
+std::vector<base::Atom> AtomsOf(const StartOfAction& start,
+                                const std::function<std::string(const std::string&)>& name_of) {
   std::vector<base::Atom> atoms{{"RobotAt", {start.robot_at}}};
   for (const std::string& object : start.on_tray) atoms.push_back({"On", {object, "trayArea1"}});
-  for (const std::string& fact : start.facts) atoms.push_back(ParseFact(fact));
+  for (const std::string& fact : start.facts) {
+    base::Atom atom = ParseFact(fact);
+    for (std::string& argument : atom.arguments) argument = name_of(argument);
+    atoms.push_back(std::move(atom));
+  }
   return atoms;
 }
 
@@ -61,6 +75,10 @@ imagination::SetupConfig ConfigOf(const SceneFiles& files, const std::string& sc
   config.action_libraries = files.actions;
   for (const auto& [name, pose] : files.areas) {
     config.areas.push_back({name, {pose[0], pose[1], pose[2]}});
+  }
+  for (const std::string& file : files.area_files) {
+    const auto more = imagination::ReadAreaFile(file);
+    config.areas.insert(config.areas.end(), more.begin(), more.end());
   }
   return config;
 }
@@ -89,8 +107,47 @@ void CheckLimit(const std::string& set, const std::string& limit, const char* un
 
 }  // namespace
 
-Scene::Scene(const SceneFiles& files) : config_(imagination::ReadClientConfig(files.config)) {
-  setup_ = imagination::LoadImaginationSetup(ConfigOf(files, config_.scene));
+Scene::Scene(const SceneFiles& files)
+    : config_(imagination::ReadClientConfig(files.config)), files_(files) {
+  Load();
+}
+
+void Scene::Load() const {
+  const imagination::SetupConfig config = ConfigOf(files_, config_.scene);
+  imagination::ImaginationSetup setup = imagination::LoadImaginationSetup(config);
+  auto skills = std::make_shared<skills::SkillSet>(*setup.skills);
+  skills->motion_sets.insert(own_sets_.begin(), own_sets_.end());
+  setup.skills = std::move(skills);
+  for (const std::string& file : files_.objects)
+    own_names_[file] = world::FindObjectModel(file, config.objects).name;
+  setup_ = std::move(setup);
+}
+
+std::string Scene::NameOf(const std::string& object) const {
+  if (!IsFile(object)) return object;
+  const std::lock_guard lock(*mutex_);
+  const auto known = own_names_.find(object);
+  if (known != own_names_.end()) return known->second;
+  files_.objects.push_back(object);
+  try {
+    Load();
+  } catch (...) {
+    files_.objects.pop_back();
+    throw;
+  }
+  return own_names_.at(object);
+}
+
+StartOfAction Scene::Named(StartOfAction start) const {
+  for (std::string& object : start.on_tray) object = NameOf(object);
+  std::map<std::string, std::array<double, 4>> put;
+  for (const auto& [object, pose] : start.put) {
+    const std::string name = NameOf(object);
+    if (put.emplace(name, pose).second) continue;
+    throw base::ConfigError(fmt::format("put: '{}' has two places; name it once", name));
+  }
+  start.put = std::move(put);
+  return start;
 }
 
 std::vector<std::string> Scene::Areas() const {
@@ -136,22 +193,37 @@ void Scene::AddMotionSet(const std::string& name, double speed, double accelerat
     throw base::ConfigError(fmt::format(
         "motion set '{}' is there already, wanted a new name; call it otherwise", name));
   }
+  own_sets_.emplace(base::ToLower(name), set);
   setup_.skills = std::move(skills);
 }
 
-imagination::RolloutSetup Scene::SetupOf(const StartOfAction& start, std::uint64_t seed) const {
+base::ActionTemplate Scene::OfOwnObjects(base::ActionTemplate action) const {
+  const std::lock_guard lock(*mutex_);
+  for (std::vector<std::string>& alternatives : action.alternatives) {
+    for (std::string& argument : alternatives) {
+      const auto known = own_names_.find(argument);
+      if (known != own_names_.end()) argument = known->second;
+    }
+  }
+  return action;
+}
+
+imagination::RolloutSetup Scene::SetupOf(const StartOfAction& given, std::uint64_t seed) const {
+  const StartOfAction start = Named(given);
+  const std::vector<base::Atom> atoms =
+      AtomsOf(start, [this](const std::string& object) { return NameOf(object); });
   const imagination::ImaginationSetup setup = [this] {
     const std::lock_guard lock(*mutex_);
     return setup_;
   }();
   return imagination::MakeRolloutSetup(
-      setup, imagination::MakeStartState(setup, AtomsOf(start), PutObjectsOf(start)), seed);
+      setup, imagination::MakeStartState(setup, atoms, PutObjectsOf(start)), seed);
 }
 
 Answer Scene::Imagine(const StartOfAction& start, const base::ActionTemplate& action,
                       const Request& request, const Cancelled& cancelled) const {
   const imagination::RolloutSetup rollouts = SetupOf(start, request.seed);
-  const std::vector<base::ActionCall> actions = base::Combinations(action);
+  const std::vector<base::ActionCall> actions = base::Combinations(OfOwnObjects(action));
   Answer answer;
   const imagination::SchedulerParams params = ParamsOf(request, config_.scheduler);
   answer.criteria = params.criteria;
@@ -175,8 +247,9 @@ std::optional<imagination::RolloutRecording> Scene::Record(const StartOfAction& 
   }
   base::ActionTemplate choices{action.name, {}};
   for (const std::string& argument : action.arguments) choices.alternatives.push_back({argument});
-  const base::ActionCall call = base::Combinations(choices).front();  // as `Imagine` writes it
   const imagination::RolloutSetup rollouts = SetupOf(start, seed);
+  const base::ActionCall call =
+      base::Combinations(OfOwnObjects(choices)).front();  // as `Imagine` writes it
   imagination::CheckSetup(rollouts, call);
   return imagination::RecordRollout(rollouts, call, rollout, cancelled);
 }

@@ -22,10 +22,13 @@ struct SceneFiles {
   std::string world, map, robot, catalogue, uncertainty;
   std::vector<std::string> objects;                    ///< files of models beside the catalogue's
   std::map<std::string, std::array<double, 3>> areas;  ///< x, y [m], yaw [rad]
+  std::vector<std::string> area_files;                 ///< YAML of goals or waypoints
   std::vector<std::string> actions;                    ///< shared libraries
 };
 
-/// Where an action begins.
+/// Where an action begins. Objects are named as on the command line: an instance, a model, or a
+/// file
+/// (.sdf, .urdf, .yaml), which is loaded when it is named first.
 struct StartOfAction {
   std::string robot_at;                              ///< area
   std::vector<std::string> on_tray;                  ///< objects
@@ -75,12 +78,21 @@ class Scene {
 
  private:
   imagination::RolloutSetup SetupOf(const StartOfAction& start, std::uint64_t seed) const;
+  /// What requests call an object that may be given by its file, which is loaded then.
+  std::string NameOf(const std::string& object) const;
+  StartOfAction Named(StartOfAction start) const;
+  /// The files of objects among an action's arguments, by their names.
+  base::ActionTemplate OfOwnObjects(base::ActionTemplate action) const;
+  void Load() const;  ///< @pre mutex_ is locked, or nobody else knows this
 
   imagination::ClientConfig config_;
-  // Requests read in other threads what add_motion_set changes. Held by pointer, so that a scene
-  // moves.
+  // Requests read in other threads what add_motion_set and own objects change. Held by pointer, so
+  // that a scene moves.
   std::unique_ptr<std::mutex> mutex_{std::make_unique<std::mutex>()};
-  imagination::ImaginationSetup setup_;
+  mutable SceneFiles files_;
+  mutable std::map<std::string, std::string> own_names_;  // of objects, by file as given
+  std::map<std::string, robot::MotionSet> own_sets_;      // by name in lower case
+  mutable imagination::ImaginationSetup setup_;
 };
 
 }  // namespace hires::python

@@ -1,5 +1,7 @@
 #include "hires/translation/translator.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cctype>
 
@@ -152,6 +154,14 @@ std::string TranslatorContext::FindModel(const std::string& instance) const {
 std::string TranslatorContext::ModelOf(const std::string& instance) const {
   const std::string model = FindModel(instance);
   if (!model.empty()) return model;
+  if (instance.find_first_of("./") != std::string::npos) {
+    throw base::ConfigError(
+        fmt::format("object '{}' is a file: running nodes know what their catalogue names; put its "
+                    "model there, "
+                    "or imagine without nodes: `hires imagine --local --object {}`, or "
+                    "hires.core.Scene in Python",
+                    instance, instance));
+  }
   std::vector<std::string> known;
   for (const auto& [name, unused] : object_models) known.push_back(name);
   throw base::ConfigError(base::UnknownName("object", instance, known) +

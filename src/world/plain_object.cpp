@@ -1,6 +1,8 @@
 #include "world/plain_object.h"
 
 #include <filesystem>
+#include <string>
+#include <vector>
 
 #include "hires/base/param_reader.h"
 #include "world/solid_object.h"
@@ -11,7 +13,15 @@ using base::Between;
 ObjectModel LoadPlainObject(const std::string& path) {
   base::ParamReader in = base::ParamReader::FromFile(path);
   ObjectModel model;
-  const std::string shape = in.Get("shape", base::OneOf({"cylinder", "box"}));
+  std::vector<std::string> needed{"shape", "height", "mass"};
+  if (in.Has("shape")) {
+    const bool is_round = in.Get("shape", base::OneOf({"cylinder", "box"})) == "cylinder";
+    const std::vector<std::string> sizes =
+        is_round ? std::vector<std::string>{"radius"} : std::vector<std::string>{"depth", "width"};
+    needed.insert(needed.end(), sizes.begin(), sizes.end());
+  }
+  in.RequireKeys(needed);  // all that are missing at once
+  const std::string shape = in.GetString("shape");
   const double height = in.Get("height", Between(kSmallestSolid, kLargestSolid));
   const double mass = in.Get("mass", Between(0.0001, 1000.0));
   if (shape == "cylinder") {

@@ -145,6 +145,25 @@ class CoreTest(unittest.TestCase):
                          "Scene: objects is 'vase.sdf' (str), wanted a list of texts")
         self.assertIn('imagine(self: hires.core.Scene, action: str', core.Scene.imagine.__doc__)
 
+    def test_own_objects_and_areas_are_named_by_their_files_as_on_the_command_line(self):
+        with tempfile.TemporaryDirectory() as folder:
+            parcel, goals = os.path.join(folder, 'parcel.yaml'), os.path.join(folder, 'goals.yaml')
+            with open(parcel, 'w') as file:
+                file.write('shape: box\ndepth: 0.1\nwidth: 0.1\nheight: 0.1\nmass: 0.5\n')
+            with open(goals, 'w') as file:
+                file.write('spot: [1.0, 1.0, 0.5]\n')
+            scene = core.Scene(world=WORLD, areas=goals)
+            self.assertIn('spot', scene.areas)
+            scene.add_motion_set('crawl', speed=0.1, acceleration=0.5)
+            way = ['move_base_param', 'atBench', 'crawl']
+            by_file = scene.imagine(*way, robot_at='dock', on_tray=[parcel], rollouts=2, threads=1)
+            self.assertIn('parcel', scene.objects)
+            by_name = scene.imagine(*way, robot_at='dock', on_tray=['parcel'], rollouts=2, threads=1)
+            self.assertEqual(by_file.ranking[0].durations.tolist(), by_name.ranking[0].durations.tolist())
+            missing = os.path.join(folder, 'none.yaml')
+            with self.assertRaisesRegex(core.ConfigError, 'none.yaml'):
+                scene.imagine(*way, robot_at='dock', on_tray=[missing])
+
     def test_other_threads_of_python_run_meanwhile_and_may_interrupt(self):
         def interrupt():
             # Until the rollouts' own threads are there; without the interpreter's lock it could not look.

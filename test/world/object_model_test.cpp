@@ -127,6 +127,14 @@ TEST_F(ObjectModelTest, RulerAndScalesGiveACylinderOrABox) {
   EXPECT_EQ(carton.collisions[0].friction, 1.0);
 }
 
+TEST_F(ObjectModelTest, AllNumbersThatAPlainObjectLacksAreNamedAtOnce) {
+  EXPECT_THAT(ErrorOf("b.yaml", "{shape: box, mass: 1.0}"),
+              HasSubstr("b.yaml: height, depth, width are missing; add them"));
+  EXPECT_THAT(ErrorOf("b.yaml", "{shape: cylinder}"),
+              HasSubstr("height, mass, radius are missing"));
+  EXPECT_THAT(ErrorOf("b.yaml", "{depth: 1.0}"), HasSubstr("shape, height, mass are missing"));
+}
+
 TEST_F(ObjectModelTest, RefusesPlainObjectsThatAreNone) {
   const auto error_of = [&](const std::string& more) {
     return ErrorOf("b.yaml", "{shape: cylinder, height: 0.2, mass: 0.5, " + more + "}");
