@@ -158,7 +158,19 @@ void ActionRunner::RemoveFinished() {
       [](const std::unique_ptr<SkillThread>& skill) { return skill->Take().has_value(); });
 }
 
-void ActionRunner::CheckFreshness(double now) {
+base::Failure Stale(double age, double limit, const std::string& late) {
+  const std::string source =
+      late.empty() ? "odometry, joint states and localisation are late together: look whether a "
+                     "computer is overloaded, or the network slow"
+                   : fmt::format("nothing current comes on {}: look at who publishes it", late);
+  return {base::FailureCode::kStaleObservation,
+          {},
+          fmt::format("{:.2f} s without a complete state of the robot, at most {:g} s "
+                      "(sensing.robot_state.stale_after); {} (`hires doctor --robot`)",
+                      age, limit, source)};
+}
+
+void ActionRunner::CheckFreshness(double now, const std::string& late) {
   for (Session& session : sessions_) {
     const double last = std::max(session.accepted, session.start ? now_ : 0.0);
     if (now - last <= params_.stale_after) continue;
@@ -172,7 +184,7 @@ void ActionRunner::CheckFreshness(double now) {
       if (stop_.braking) command.base_velocity.reset();
       hooks_.send(command);
     }
-    Finish(&session, ActionEnd::kFailed, Code::kStaleObservation);
+    Finish(&session, ActionEnd::kFailed, Stale(now - last, params_.stale_after, late));
   }
   RemoveFinished();
 }

@@ -34,6 +34,11 @@ struct RunnerParams {
   StopParams stop;
 };
 
+/// stale_observation, for people: how old the last complete state of the robot is, how old it may be
+/// [s], and what to look at.
+/// @param late  the topic that keeps it from being complete; empty: none alone does.
+base::Failure Stale(double age, double limit, const std::string& late);
+
 /// Runs skills side by side on one robot: those that need different groups of joints. Time and
 /// observations are handed in; commands and ends go out through the hooks. One thread owns it.
 ///
@@ -81,7 +86,8 @@ class ActionRunner {
   void Collect();
 
   /// Ends all actions as failed with stale_observation if the last look is too long ago.
-  void CheckFreshness(double now);
+  /// @param late  the topic that keeps the state from being complete; empty: none alone does.
+  void CheckFreshness(double now, const std::string& late = {});
 
   /// Ends what is being stopped without waiting until the robot stands: no observation would tell.
   void GiveUpStopping();

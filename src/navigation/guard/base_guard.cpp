@@ -50,7 +50,14 @@ base::Failure BadRequest(const DriveRequest& request) {
   return defect.empty() ? base::Failure() : base::Failure(Code::kBadRequest, {}, defect);
 }
 
-base::Failure Late(Code code, double age) { return {code, {}, fmt::format("{:.2f} s", age)}; }
+/// @param limit  [s] up to which it is good, `key` of the guard's parameters.
+/// @param advice  what to look at
+base::Failure Late(Code code, double age, double limit, const char* key, const char* advice) {
+  return {code, {}, fmt::format("{:.2f} s, at most {:g} s ({}); {}", age, limit, key, advice)};
+}
+
+constexpr char kOverloaded[] =
+    "look whether its computer is overloaded or the network slow (faq: stale codes)";
 
 }  // namespace
 
@@ -119,7 +126,9 @@ std::optional<geometry::Twist2> BaseGuard::Update(double now) {
   last_update_ = now;
   if (state_ == GuardState::kPassing) {
     const base::Failure why =
-        gap > params_.update_patience ? Late(Code::kLateGuard, gap) : WhyStop(now);
+        gap > params_.update_patience
+            ? Late(Code::kLateGuard, gap, params_.update_patience, "update_patience", kOverloaded)
+            : WhyStop(now);
     why ? Begin(why, now) : FollowRequest();
   }
   if (state_ == GuardState::kStanding) Wait(now);
@@ -184,7 +193,10 @@ base::Failure BaseGuard::WhyNoPose(double now) const {
   }
   const double age = now - *pose_stamps_[oldest];
   if (age <= params_.pose_patience) return {};
-  return {Code::kStalePose, {}, fmt::format("{:.2f} s, {}", age, kPoseSources[oldest])};
+  return {Code::kStalePose,
+          {},
+          fmt::format("{:.2f} s, {}; at most {:g} s (pose_patience)", age, kPoseSources[oldest],
+                      params_.pose_patience)};
 }
 
 base::Failure BaseGuard::WhatForbidsDriving(double now) const {
@@ -194,7 +206,8 @@ base::Failure BaseGuard::WhatForbidsDriving(double now) const {
   if (base::Failure missing = WhyNoPose(now); missing) return missing;
   if (params_.needs_scan && !scan_stamp_) return Code::kNoScan;
   if (params_.needs_scan && now - *scan_stamp_ > params_.scan_patience) {
-    return Late(Code::kStaleScan, now - *scan_stamp_);
+    return Late(Code::kStaleScan, now - *scan_stamp_, params_.scan_patience, "scan_patience",
+                "look at the base laser's topic: `rostopic hz`, `hires doctor --robot`");
   }
   if (!params_.needs_localisation) return {};
   if (!localisation_) return Code::kNoLocalisation;
@@ -211,7 +224,8 @@ base::Failure BaseGuard::WhatForbidsDriving(double now) const {
 base::Failure BaseGuard::WhyStop(double now) const {
   if (base::Failure wrong = WhatForbidsDriving(now); wrong) return wrong;
   if (now - request_time_ > params_.request_patience) {
-    return Late(Code::kSilentMiddleLayer, now - request_time_);
+    return Late(Code::kSilentMiddleLayer, now - request_time_, params_.request_patience,
+                "request_patience", kOverloaded);
   }
   const bool must_wait = is_held_ && request_.id != current_;  // somebody else takes over
   if (request_.id == 0 || must_wait) return Code::kRequestOver;
@@ -219,7 +233,8 @@ base::Failure BaseGuard::WhyStop(double now) const {
   if (!command_) return {};
   if (!IsFinite(command_->V)) return Code::kBadCommand;
   if (!IsZero(command_->V) && now - command_->time > params_.command_patience) {
-    return Late(Code::kSilentCommands, now - command_->time);
+    return Late(Code::kSilentCommands, now - command_->time, params_.command_patience,
+                "command_patience", kOverloaded);
   }
   return {};
 }

@@ -132,9 +132,12 @@ Failure MiddleLayerNode::WhyNotReady(const ActionCall& action) const {
     return lockstep_->is_awaited() ? Failure()
                                    : Failure{Code::kNoController, {}, lockstep_->topic()};
   }
-  const bool is_fresh = inputs_.state().CompleteUntil() && !ros::Time::now().isZero() &&
-                        ros::Time::now().toSec() - looked_ <= params_.runner.stale_after;
-  return is_fresh ? Failure() : Code::kStaleObservation;
+  const double now = ros::Time::now().toSec(), limit = params_.runner.stale_after;
+  if (!inputs_.state().CompleteUntil() || ros::Time::now().isZero()) {
+    return {Code::kStaleObservation, {}, "nothing comes on " + inputs_.Missing()};
+  }
+  return now - looked_ <= limit ? Failure()
+                                : hires::control::Stale(now - looked_, limit, inputs_.Missing());
 }
 
 Failure MiddleLayerNode::Start(int id, const ActionCall& action, double time_limit) {
@@ -203,7 +206,7 @@ void MiddleLayerNode::LookAtTick() {
     looked_ = *stamp;
     LookAt(*stamp, std::min(*stamp, *complete));
   } else {
-    runner_.CheckFreshness(*stamp);
+    runner_.CheckFreshness(*stamp, inputs_.Missing());
   }
   AnswerTick();
 }
@@ -217,7 +220,7 @@ void MiddleLayerNode::AnswerTick() {
 /// @param stamp  [s] up to which what the robot says is complete.
 void MiddleLayerNode::LookAt(double time, double stamp) {
   const auto now = inputs_.state().At(stamp);
-  if (!now) return runner_.CheckFreshness(time);
+  if (!now) return runner_.CheckFreshness(time, inputs_.Missing());
   last_look_ = Steady::now();
   const hires::robot::Observation seen = inputs_.ObservationOf(*now);
   if (driving_) {
@@ -246,7 +249,7 @@ void MiddleLayerNode::Run(const std::function<bool()>& stop) {
 void MiddleLayerNode::Tend() {
   goals_.StartWaiting();
   if (driving_) driving_->Tick();
-  if (!lockstep_) runner_.CheckFreshness(ros::Time::now().toSec());
+  if (!lockstep_) runner_.CheckFreshness(ros::Time::now().toSec(), inputs_.Missing());
   if (runner_.is_stopping() && Steady::now() - last_look_ > kBlindStop) runner_.GiveUpStopping();
   PublishFeedback();
 }
