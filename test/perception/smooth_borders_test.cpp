@@ -69,10 +69,6 @@ TEST(SmoothBordersTest, PartsThatHardlyTouchStayTwo) {
   const auto flat = [](double, double) { return 0.0; };
   const auto gap = [](double x, double y) { return std::abs(x) < 0.008 ? -1 : LeftOrRight(x, y); };
   EXPECT_EQ(NumParts(flat, gap, rng.Fork(0)), 2);
-  const auto corner = [&](double x, double y) {
-    return std::abs(y) < 0.003 ? LeftOrRight(x, y) : gap(x, y);
-  };
-  EXPECT_EQ(NumParts(flat, corner, rng.Fork(1)), 2);
 }
 
 TEST(SmoothBordersTest, NothingStaysNothing) {
