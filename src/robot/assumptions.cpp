@@ -10,6 +10,8 @@
 #include "hires/base/text.h"
 #include "hires/robot/link_bounds.h"
 #include "robot/base_height.h"
+#include "robot/drive_guess.h"
+#include "robot/tray_place.h"
 
 namespace hires::robot {
 namespace {
@@ -92,16 +94,52 @@ std::string LaserText(const RobotModel& model, const std::string& urdf_xml) {
       Few(links), links.front());
 }
 
+std::string NumbersText(const MotionSet& set) {
+  return fmt::format("{:g} m/s, {:g} rad/s, {:g} m/s^2, {:g} rad/s^2", set.max_linear_velocity,
+                     set.max_angular_velocity, set.max_linear_acceleration,
+                     set.max_angular_acceleration);
+}
+
+std::string DriveText(const Robot& robot) {
+  const DriveGuess guess = GuessDrive(robot.model);
+  std::string text = fmt::format("base_controller.drive: guessed to be {}, because it has {}",
+                                 ToString(guess.drive), guess.why);
+  return text + "; if that is wrong, write `base_controller: {drive: ..}` in a profile";
+}
+
+std::string TrayText(const Robot& robot, const IsGiven& is_given) {
+  const RobotProfile& profile = robot.profile;
+  const Eigen::Vector3d& p = profile.X_TO.translation;
+  const TrayPlace place = PlaceOnTray(robot.model, profile.joints, profile.tray_link);
+  const std::string where =
+      place.taken_by.empty() ? "the middle of its top"
+      : place.is_free
+          ? fmt::format(
+                "the middle of the largest free part of its top, as '{}' "
+                "takes the middle",
+                place.taken_by)
+          : fmt::format("the middle of its top, of which '{}' leaves no part free", place.taken_by);
+  return fmt::format(
+      "{}: things stand on '{}' at ({:.3f}, {:.3f}, {:.3f}) m of its frame, {}; "
+      "`object_on_tray: {{xyz: [..], rpy: [0, 0, 0]}}` in a profile says another "
+      "place",
+      is_given("tray_link") ? "object_on_tray" : "tray_link", profile.tray_link, p.x(), p.y(),
+      p.z(), where);
+}
+
 void AddMotion(const Robot& robot, const IsGiven& is_given, std::vector<std::string>* texts) {
+  if (!is_given("base_controller.drive")) texts->push_back(DriveText(robot));
   std::vector<std::string> missing;
   for (const char* key : {"motion_sets", "base_controller"}) {
     if (!is_given(key)) missing.emplace_back(key);
   }
   if (missing.empty()) return;
+  const bool limits = !is_given("motion_sets") && !is_given("base_controller.limits");
   texts->push_back(fmt::format(
-      "{}: what the profile does not say is as a PR2 has it (default motion set '{}'); write {} in "
-      "a profile",
+      "{}: what the profile does not say is as a PR2 has it (default motion set '{}'{}); write {} "
+      "in a profile",
       base::Join(missing, ", "), robot.profile.default_motion_set,
+      limits ? ", limits of the base " + NumbersText(robot.profile.base_controller.limits) : "",
       missing.size() == 1 ? "it" : "them"));
 }
 
@@ -137,7 +175,7 @@ std::vector<std::string> LaserLinks(const RobotModel& model, const std::string& 
 }
 
 std::vector<std::string> AssumptionsOf(const Robot& robot, const IsGiven& is_given,
-                                       const std::string& urdf_path) {
+                                       const std::string& urdf_xml) {
   std::vector<std::string> texts;
   const Bounds bounds = LinkBounds(robot);
   if (!is_given("footprint")) texts.push_back(FootprintText(robot, bounds));
@@ -166,8 +204,10 @@ std::vector<std::string> AssumptionsOf(const Robot& robot, const IsGiven& is_giv
         robot.profile.base_link, LowestShape(bounds)));
   }
   if (robot.profile.laser_link.empty()) {
-    texts.push_back(LaserText(robot.model, base::ReadTextFile(urdf_path)));
+    texts.push_back(LaserText(robot.model, urdf_xml));
   }
+  if (!robot.profile.tray_link.empty() && !is_given("object_on_tray"))
+    texts.push_back(TrayText(robot, is_given));
   AddMotion(robot, is_given, &texts);
   return texts;
 }

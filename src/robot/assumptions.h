@@ -9,13 +9,14 @@
 namespace hires::robot {
 
 /// What no file says of the robot and yet what it does rests on, one sentence each, with what to
-/// write: footprint, joints that stand at zero, height of the base, laser, what of its motion is a
-/// PR2's.
-/// @param is_given  whether the profile has a key; none is given where a bare URDF was loaded.
-/// @param urdf_path  file that the model is of.
+/// write: footprint, joints that stand at zero, height of the base, laser, tray, drive, what of its
+/// motion is a PR2's.
+/// @param is_given  whether the profile has a key, or "key.key"; none is given where a bare URDF
+/// was loaded.
+/// @param urdf_xml  text that the model is of.
 std::vector<std::string> AssumptionsOf(const Robot& robot,
                                        const std::function<bool(const std::string&)>& is_given,
-                                       const std::string& urdf_path);
+                                       const std::string& urdf_xml);
 
 /// Links of the URDF that have a laser: by a ray sensor in <gazebo reference=...>, or by their
 /// name. In the order of the model.

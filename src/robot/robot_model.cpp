@@ -8,9 +8,13 @@
 
 #include "hires/base/check.h"
 #include "hires/base/error.h"
+#include "hires/base/log.h"
 #include "hires/base/text.h"
 #include "robot/model_hash.h"
 #include "robot/quiet_urdf_parser.h"
+#include "robot/urdf/clean_urdf.h"
+#include "robot/urdf/read_urdf.h"
+#include "robot/urdf/urdf_file.h"
 #include "robot/urdf_conversion.h"
 #include "robot/urdf_outline.h"
 
@@ -19,7 +23,6 @@ namespace {
 
 using geometry::Pose3;
 
-constexpr std::size_t kMaxUrdfBytes = 16u << 20;
 constexpr double kLimitSlack = 1e-6;  // [rad] or [m]
 
 [[noreturn]] void Fail(const RobotModel& model, const std::string& what) {
@@ -173,16 +176,26 @@ std::vector<std::string> LinksBelow(const RobotModel& model, const std::string& 
   return names;
 }
 
+UrdfReading ReadUrdf(const std::string& xml, const std::string& where) {
+  // The outline first: it names lines, and it refuses nesting so deep that urdfdom would crash.
+  const UrdfOutline outline = ReadUrdfOutline(xml, where);
+  const CleanUrdf clean = CleanedUrdf(xml, where);
+  UrdfReading reading =
+      ConvertUrdf(*ParseUrdfQuietly(clean.xml, where), outline, clean.shape_lines, where);
+  reading.model.hash = HashOf(reading.model);
+  return reading;
+}
+
 RobotModel LoadRobotModel(const std::string& urdf_path) {
-  return ParseRobotModel(base::ReadTextFile(urdf_path, kMaxUrdfBytes), urdf_path);
+  const UrdfFile file = SplitArguments(urdf_path);
+  return ParseRobotModel(ReadUrdfFile(file), file.path);
 }
 
 RobotModel ParseRobotModel(const std::string& urdf_xml, const std::string& where) {
-  // The outline first: it names lines, and it refuses nesting so deep that urdfdom would crash.
-  const UrdfOutline outline = ReadUrdfOutline(urdf_xml, where);
-  RobotModel model = ConvertUrdf(*ParseUrdfQuietly(urdf_xml, where), outline, where);
-  model.hash = HashOf(model);
-  return model;
+  UrdfReading reading = ReadUrdf(urdf_xml, where);
+  for (const std::string& doubt : reading.doubts)
+    base::Log(base::LogLevel::kWarn, fmt::format("urdf={} {}", where, doubt));
+  return std::move(reading.model);
 }
 
 std::vector<Pose3> ForwardKinematics(const RobotModel& model, const JointPositions& positions) {

@@ -16,7 +16,10 @@
 #include "robot/base_height.h"
 #include "robot/drive_guess.h"
 #include "robot/extra_sensors_reader.h"
+#include "robot/tray_place.h"
 #include "robot/upper_body_reader.h"
+#include "robot/urdf/read_urdf.h"
+#include "robot/urdf/urdf_file.h"
 
 namespace hires::robot {
 namespace {
@@ -24,6 +27,8 @@ namespace {
 using base::Between;
 using base::ParamReader;
 using geometry::Pose3;
+
+constexpr double kWidestRobot = 10.0;  // [m] a larger one is asked about its units
 
 MotionSet ReadMotionSet(ParamReader in) {
   MotionSet set;
@@ -317,79 +322,63 @@ std::uint64_t HashOf(const RobotProfile& profile) {
   return hash.value();
 }
 
-/// A collision shape that may be the tray: the largest from above wins.
-struct TrayCandidate {
-  int link{-1};
-  double area{0.0};  ///< [m^2] of its bounding box from above
-  Pose3 X_TO;        ///< upright on the middle of its top, in the link's frame
-};
-
-/// @param may_be  which links are looked at, by name.
-template <typename MayBe>
-TrayCandidate FindTray(const RobotModel& model, const JointPositions& joints, const MayBe& may_be) {
-  const std::vector<Pose3> X_R = ForwardKinematics(model, joints);
-  TrayCandidate best;
-  for (std::size_t i = 0; i < model.links.size(); ++i) {
-    if (!may_be(model.links[i].name)) continue;
-    for (const geometry::Collision& collision : model.links[i].collisions) {
-      const geometry::Aabb bounds = geometry::BoundsOf(collision.shape, X_R[i] * collision.X_BS);
-      const Eigen::Vector3d size = bounds.upper - bounds.lower;
-      if (size.x() * size.y() <= best.area) continue;
-      const Eigen::Vector3d middle = 0.5 * (bounds.upper + bounds.lower);
-      const Pose3 X_RO{{middle.x(), middle.y(), bounds.upper.z()}, Eigen::Quaterniond::Identity()};
-      best = {static_cast<int>(i), size.x() * size.y(), X_R[i].Inverse() * X_RO};
-    }
+/// [m^2] from above of a link's largest shape; 0 where it has none.
+double LargestArea(const Link& link, const Pose3& X_RL) {
+  double largest = 0.0;
+  for (const geometry::Collision& collision : link.collisions) {
+    const geometry::Aabb bounds = geometry::BoundsOf(collision.shape, X_RL * collision.X_BS);
+    const Eigen::Vector3d size = bounds.upper - bounds.lower;
+    largest = std::max(largest, size.x() * size.y());
   }
-  return best;
+  return largest;
 }
 
-void GuessTray(const RobotModel& model, RobotProfile* profile) {
-  const TrayCandidate tray = FindTray(model, {}, [](const std::string& link) {
-    return base::ToLower(link).find("tray") != std::string::npos;
-  });
-  if (tray.link < 0) return;
-  profile->tray_link = model.links[tray.link].name;
-  profile->X_TO = tray.X_TO;
+/// The link called a tray whose shape is the largest from above; "" where there is none.
+std::string GuessTray(const RobotModel& model) {
+  const std::vector<Pose3> X_R = ForwardKinematics(model, {});
+  std::string tray;
+  double largest = 0.0;
+  for (std::size_t i = 0; i < model.links.size(); ++i) {
+    if (base::ToLower(model.links[i].name).find("tray") == std::string::npos) continue;
+    const double area = LargestArea(model.links[i], X_R[i]);
+    if (area <= largest) continue;
+    largest = area;
+    tray = model.links[i].name;
+  }
+  return tray;
+}
+
+/// @pre tray_link has a shape.
+void PutOnTray(const RobotModel& model, RobotProfile* profile) {
+  profile->X_TO = PlaceOnTray(model, profile->joints, profile->tray_link).X_TO;
 }
 
 /// Of a tray that the file names, a file that says nothing of the place on it.
 /// @pre CheckProfile
-void PlaceOnTray(const ParamReader& in, const RobotModel& model, RobotProfile* profile) {
-  if (!in.Has("tray_link") || profile->tray_link.empty() || in.Has("object_on_tray")) return;
-  profile->X_TO = FindTray(model, profile->joints, [&](const std::string& link) {
-                    return link == profile->tray_link;
-                  }).X_TO;
+void PlaceOnNamedTray(const ParamReader& in, const RobotModel& model, RobotProfile* profile) {
+  if (profile->tray_link.empty() || in.Has("object_on_tray")) return;
+  PutOnTray(model, profile);
 }
 
-void GuessAndSayDrive(const RobotModel& model, BaseControllerParams* params) {
+void SetGuessedDrive(const RobotModel& model, BaseControllerParams* params) {
   const DriveGuess guess = GuessDrive(model);
-  base::Log(base::LogLevel::kWarn,
-            fmt::format("robot={} drive={} guessed, because it has {}; if that is wrong, write a "
-                        "profile with base_controller.drive",
-                        model.name, ToString(guess.drive), guess.why));
   params->drive = guess.drive;
   params->min_turning_radius = guess.min_turning_radius;
 }
 
-void SayAssumedMotion(const RobotModel& model) {
-  base::Log(base::LogLevel::kWarn,
-            fmt::format("robot={} motion sets and base controller are ASSUMED to be a PR2's; a "
-                        "profile with motion_sets says what they are",
-                        model.name));
+/// Answers carry this among their caveats; the line is for whoever follows a node's log.
+void SayAssumed(const Robot& robot) {
+  for (const std::string& text : robot.assumed)
+    base::Log(base::LogLevel::kInfo, fmt::format("robot={} assumed {}", robot.model.name, text));
 }
 
 /// What the file leaves out is taken from the model, as for a bare URDF.
 void FillFromModel(ParamReader in, Robot* robot) {
   RobotProfile& profile = robot->profile;
   if (!in.Has("base_link")) profile.base_link = robot->model.links.front().name;
-  if (!in.Has("tray_link")) {
-    const Pose3 X_TO = profile.X_TO;
-    GuessTray(robot->model, &profile);
-    if (in.Has("object_on_tray")) profile.X_TO = X_TO;
-  }
-  if (!in.Has("motion_sets")) SayAssumedMotion(robot->model);
+  if (!in.Has("tray_link")) profile.tray_link = GuessTray(robot->model);
   if (!in.Has("base_controller") || !in.Sub("base_controller").Has("drive")) {
-    GuessAndSayDrive(robot->model, &profile.base_controller);
+    SetGuessedDrive(robot->model, &profile.base_controller);
   }
 }
 
@@ -409,6 +398,45 @@ std::vector<Eigen::Vector2d> CornersOf(const RobotModel& model, const std::strin
     }
   }
   return points;
+}
+
+/// Joints in the driving posture. Where that fails it may be a matter of units.
+void SetFootprint(const std::vector<std::string>& doubts, Robot* robot) {
+  RobotProfile& profile = robot->profile;
+  try {
+    profile.footprint = OutlineOf(robot->model, profile.base_link, profile.joints);
+  } catch (const base::ConfigError& error) {
+    if (doubts.empty()) throw;
+    throw base::ConfigError(fmt::format("{}\n  {}", error.what(), base::Join(doubts, "\n  ")));
+  }
+}
+
+/// Of units: meshes that are hardly in metres, and a footprint that is hardly a robot's.
+void SayDoubts(const std::vector<std::string>& doubts, const std::string& urdf,
+               const Robot& robot) {
+  for (const std::string& doubt : doubts)
+    base::Log(base::LogLevel::kWarn, fmt::format("urdf={} {}", urdf, doubt));
+  if (!doubts.empty()) return;
+  geometry::Aabb hull;
+  for (const Eigen::Vector2d& p : robot.profile.footprint) hull.Include({p.x(), p.y(), 0.0});
+  const Eigen::Vector3d size = hull.upper - hull.lower;
+  if (size.maxCoeff() <= kWidestRobot) return;
+  base::Log(base::LogLevel::kWarn,
+            fmt::format("urdf={} the robot is {:.4g} x {:.4g} m large from above, as if its unit "
+                        "were not the metre: in mm it would be {:.4g} x {:.4g} m, in cm {:.4g} x "
+                        "{:.4g} m; lengths in a URDF and in a profile are metres",
+                        urdf, size.x(), size.y(), 1e-3 * size.x(), 1e-3 * size.y(), 1e-2 * size.x(),
+                        1e-2 * size.y()));
+}
+
+/// Whether a profile says something of its own, by key or "key.key".
+std::function<bool(const std::string&)> IsGivenIn(const ParamReader& in) {
+  return [&in](const std::string& key) {
+    const std::size_t dot = key.find('.');
+    if (dot == std::string::npos) return in.Has(key);
+    const std::string section = key.substr(0, dot);
+    return in.Has(section) && ParamReader(in).Sub(section).Has(key.substr(dot + 1));
+  };
 }
 
 /// Whether the torso, the neck or an arm carries it.
@@ -462,41 +490,46 @@ Robot LoadRobot(const std::string& profile_path) {
   RequireSomeProfile(in, profile_path);
   Robot robot;
   robot.profile = ReadProfile(&in);
-  const std::filesystem::path folder = std::filesystem::path(profile_path).parent_path();
-  const std::string urdf = (folder / robot.profile.urdf).lexically_normal().string();
-  if (!std::filesystem::exists(urdf)) {
+  const UrdfFile urdf = UrdfOf(profile_path, robot.profile);
+  if (!std::filesystem::exists(urdf.path)) {
     in.Fail("urdf",
             fmt::format("wanted a file that is there, but {} is not; write its path as seen "
                         "from the profile's folder",
-                        urdf));
+                        urdf.path));
   }
-  robot.model = LoadRobotModel(urdf);
+  const std::string xml = ReadUrdfFile(urdf);
+  UrdfReading reading = ReadUrdf(xml, urdf.path);
+  robot.model = std::move(reading.model);
   FillFromModel(in, &robot);
   CheckProfile(in, robot.profile, robot.model);
-  PlaceOnTray(in, robot.model, &robot.profile);
+  PlaceOnNamedTray(in, robot.model, &robot.profile);
   StandOnFloor(&robot);
-  if (robot.profile.footprint.empty()) {
-    robot.profile.footprint = OutlineOf(robot.model, robot.profile.base_link, robot.profile.joints);
-  }
-  robot.assumed = AssumptionsOf(
-      robot, [&in](const std::string& key) { return in.Has(key); }, urdf);
+  if (robot.profile.footprint.empty()) SetFootprint(reading.doubts, &robot);
+  SayDoubts(reading.doubts, urdf.path, robot);
+  robot.assumed = AssumptionsOf(robot, IsGivenIn(in), xml);
+  SayAssumed(robot);
   robot.profile.hash = HashOf(robot.profile);
   return robot;
 }
 
 Robot LoadRobotFromUrdf(const std::string& urdf_path) {
+  const UrdfFile file = SplitArguments(urdf_path);
+  const std::string xml = ReadUrdfFile(file);
+  UrdfReading reading = ReadUrdf(xml, file.path);
   Robot robot;
-  robot.model = LoadRobotModel(urdf_path);
+  robot.model = std::move(reading.model);
   RobotProfile& profile = robot.profile;
-  profile.urdf = std::filesystem::path(urdf_path).filename().string();
+  profile.urdf = TextOf({std::filesystem::path(file.path).filename().string(), file.arguments});
   profile.base_link = robot.model.links.front().name;
-  GuessTray(robot.model, &profile);
-  GuessAndSayDrive(robot.model, &profile.base_controller);
-  SayAssumedMotion(robot.model);
+  profile.tray_link = GuessTray(robot.model);
+  if (!profile.tray_link.empty()) PutOnTray(robot.model, &profile);
+  SetGuessedDrive(robot.model, &profile.base_controller);
   StandOnFloor(&robot);
-  profile.footprint = OutlineOf(robot.model, profile.base_link, {});
+  SetFootprint(reading.doubts, &robot);
+  SayDoubts(reading.doubts, file.path, robot);
   robot.assumed = AssumptionsOf(
-      robot, [](const std::string& /*key*/) { return false; }, urdf_path);
+      robot, [](const std::string& /*key*/) { return false; }, xml);
+  SayAssumed(robot);
   profile.hash = HashOf(profile);
   return robot;
 }

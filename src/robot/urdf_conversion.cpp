@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -11,8 +10,8 @@
 #include <memory>
 #include <queue>
 
+#include "geometry/mesh_units.h"
 #include "hires/base/error.h"
-#include "hires/base/log.h"
 #include "hires/base/text.h"
 #include "hires/geometry/mesh_reader.h"
 #include "robot/mesh_path.h"
@@ -23,6 +22,7 @@ namespace {
 using geometry::Pose3;
 
 constexpr double kMaxLength = 1e3;  // [m] of any offset or shape: beyond lies a slip of units
+constexpr geometry::DoubtfulSize kDoubtful{50.0, 200.0, 10.0};  // of a part of a robot
 
 Eigen::Vector3d ToVector(const urdf::Vector3& v) { return {v.x, v.y, v.z}; }
 
@@ -36,15 +36,15 @@ Pose3 ToPose(const urdf::Pose& pose) {
 class ModelBuilder {
  public:
   ModelBuilder(const urdf::ModelInterface& urdf, const UrdfOutline& outline,
-               const std::string& where)
-      : urdf_(urdf), outline_(outline), where_(where) {}
+               const ShapeLines& shape_lines, const std::string& where)
+      : urdf_(urdf), outline_(outline), shape_lines_(shape_lines), where_(where) {}
 
-  RobotModel Build() {
+  UrdfReading Build() {
     model_.name = urdf_.getName();
+    ReadMeshes();
     AddTree();
     CheckMimics();
-    WarnOfImpossibleInertias();
-    return std::move(model_);
+    return {std::move(model_), std::move(doubts_)};
   }
 
  private:
@@ -78,7 +78,7 @@ class ModelBuilder {
     Link link;
     link.name = source.name;
     if (source.parent_joint) link.joint = ToJoint(*source.parent_joint, parent);
-    if (source.inertial) link.inertial = ToMass(source.name, *source.inertial);
+    if (source.inertial) link.inertial = ToMass(*source.inertial);
     const auto friction = outline_.friction.find(source.name);
     for (const auto& collision : source.collision_array) {
       link.collisions.push_back(ToCollision(source.name, *collision));
@@ -156,22 +156,14 @@ class ModelBuilder {
                        kMaxLength);
   }
 
-  geometry::MassProperties ToMass(const std::string& link, const urdf::Inertial& in) const {
+  /// What no body can have was left out before.
+  static geometry::MassProperties ToMass(const urdf::Inertial& in) {
     const Pose3 X_LI = ToPose(in.origin);
     Eigen::Matrix3d inertia;
     inertia << in.ixx, in.ixy, in.ixz, in.ixy, in.iyy, in.iyz, in.ixz, in.iyz, in.izz;
     const Eigen::Matrix3d turn = X_LI.rotation.toRotationMatrix();
     const Eigen::Matrix3d turned = turn * inertia * turn.transpose();
-    const geometry::MassProperties mass{in.mass, X_LI.translation,
-                                        0.5 * (turned + turned.transpose())};
-    const std::string far = WhyBadPose(X_LI);
-    if (!far.empty()) FailLink(link, "its centre of mass " + far);
-    if (!(in.mass > 0.0) || !inertia.allFinite() ||
-        Eigen::LLT<Eigen::Matrix3d>(inertia).info() != Eigen::Success) {
-      FailLink(link,
-               geometry::WhyUnphysical(mass) + "; a frame without mass has no <inertial> at all");
-    }
-    return mass;
+    return {in.mass, X_LI.translation, 0.5 * (turned + turned.transpose())};
   }
 
   geometry::Collision ToCollision(const std::string& link, const urdf::Collision& source) {
@@ -207,24 +199,54 @@ class ModelBuilder {
         return geometry::Sphere{
             Length(link, "radius", static_cast<const urdf::Sphere&>(source).radius)};
       default:
-        return ToMesh(link, static_cast<const urdf::Mesh&>(source));
+        return meshes_.at(KeyOf(static_cast<const urdf::Mesh&>(source)));
     }
   }
 
-  geometry::Shape ToMesh(const std::string& link, const urdf::Mesh& source) {
-    const std::array<double, 3> scale{source.scale.x, source.scale.y, source.scale.z};
-    try {
-      const std::string path =
-          ResolveMesh(source.filename, std::filesystem::path(where_).parent_path());
-      std::shared_ptr<const geometry::TriangleMesh>& mesh = meshes_[{path, scale}];
-      if (!mesh) {
-        mesh = std::make_shared<geometry::TriangleMesh>(
-            geometry::ReadMesh(path, ToVector(source.scale)));
+  using MeshKey = std::pair<std::string, std::array<double, 3>>;  // URI and scale
+
+  static MeshKey KeyOf(const urdf::Mesh& mesh) {
+    return {mesh.filename, {mesh.scale.x, mesh.scale.y, mesh.scale.z}};
+  }
+
+  /// Of all links, so that all files which are missing or no meshes are told at once.
+  void ReadMeshes() {
+    std::multimap<int, std::string> problems;  // by line
+    const base::PackageFinder packages;
+    for (const auto& [name, link] : urdf_.links_) {
+      for (std::size_t i = 0; i < link->collision_array.size(); ++i) {
+        const urdf::GeometrySharedPtr& geometry = link->collision_array[i]->geometry;
+        if (!geometry || geometry->type != urdf::Geometry::MESH) continue;
+        try {
+          ReadMesh(static_cast<const urdf::Mesh&>(*geometry), packages);
+        } catch (const base::ConfigError& error) {
+          const int line = shape_lines_.at(name).at(i);
+          problems.emplace(line, fmt::format("link '{}': {}; line {}", name, error.what(), line));
+        }
       }
-      return mesh;
-    } catch (const base::ConfigError& error) {
-      FailLink(link, error.what());
     }
+    if (problems.empty()) return;
+    std::vector<std::string> texts;
+    for (const auto& [line, text] : problems) texts.push_back(text);
+    if (texts.size() == 1) throw base::ConfigError(where_ + ": " + texts.front());
+    throw base::ConfigError(fmt::format("{}: {} meshes cannot be read:\n  {}", where_, texts.size(),
+                                        base::Join(texts, "\n  ")));
+  }
+
+  void ReadMesh(const urdf::Mesh& source, const base::PackageFinder& packages) {
+    MeshPtr& by_uri = meshes_[KeyOf(source)];
+    if (by_uri) return;
+    const std::string path =
+        ResolveMesh(source.filename, std::filesystem::path(where_).parent_path(), packages);
+    MeshPtr& by_path = files_[{path, KeyOf(source).second}];
+    if (!by_path) {
+      const Eigen::Vector3d scale = ToVector(source.scale);
+      by_path = std::make_shared<geometry::TriangleMesh>(geometry::ReadMesh(path, scale));
+      const std::string doubt =
+          geometry::DoubtedUnit(path, *by_path, scale, kDoubtful, "scale=\"{}\"");
+      if (!doubt.empty()) doubts_.push_back(doubt);
+    }
+    by_uri = by_path;
   }
 
   void CheckMimics() const {
@@ -248,36 +270,23 @@ class ModelBuilder {
     }
   }
 
-  /// Descriptions of real robots hold invented inertias of tiny frames that no body can have; they
-  /// do no harm where the mass is small, so they are told of and kept.
-  void WarnOfImpossibleInertias() const {
-    std::vector<std::string> names;
-    for (const Link& link : model_.links) {
-      if (link.inertial && !geometry::WhyUnphysical(*link.inertial).empty()) {
-        names.push_back(link.name);
-      }
-    }
-    if (names.empty()) return;
-    base::Log(base::LogLevel::kWarn,
-              fmt::format("urdf={} impossible_inertia={} reason=\"principal moments break the "
-                          "triangle inequality\"",
-                          where_, base::Join(names, ",")));
-  }
+  using MeshPtr = std::shared_ptr<const geometry::TriangleMesh>;
 
   const urdf::ModelInterface& urdf_;
   const UrdfOutline& outline_;
+  const ShapeLines& shape_lines_;
   std::string where_;
   RobotModel model_;
-  std::map<std::pair<std::string, std::array<double, 3>>,
-           std::shared_ptr<const geometry::TriangleMesh>>
-      meshes_;
+  std::map<MeshKey, MeshPtr> meshes_;  // by URI
+  std::map<MeshKey, MeshPtr> files_;   // by path
+  std::vector<std::string> doubts_;
 };
 
 }  // namespace
 
-RobotModel ConvertUrdf(const urdf::ModelInterface& urdf, const UrdfOutline& outline,
-                       const std::string& where) {
-  return ModelBuilder(urdf, outline, where).Build();
+UrdfReading ConvertUrdf(const urdf::ModelInterface& urdf, const UrdfOutline& outline,
+                        const ShapeLines& shape_lines, const std::string& where) {
+  return ModelBuilder(urdf, outline, shape_lines, where).Build();
 }
 
 }  // namespace hires::robot

@@ -2,17 +2,23 @@
 
 #include <urdf_model/model.h>
 
+#include <map>
 #include <string>
+#include <vector>
 
-#include "hires/robot/robot_model.h"
+#include "robot/urdf/read_urdf.h"
 #include "robot/urdf_outline.h"
 
 namespace hires::robot {
 
+/// Of each link, the lines of its collision shapes, in the parser's order.
+using ShapeLines = std::map<std::string, std::vector<int>>;
+
 /// Turns the parser's model into ours, reads its meshes and checks what the parser lets pass. The
 /// hash is left at 0. `where` is the file's path, for messages and for relative meshes.
-/// @throws base::ConfigError naming file, link or joint, line and remedy.
-RobotModel ConvertUrdf(const urdf::ModelInterface& urdf, const UrdfOutline& outline,
-                       const std::string& where);
+/// @throws base::ConfigError naming file, link or joint, line and remedy; of meshes that are
+/// missing or cannot be read all at once.
+UrdfReading ConvertUrdf(const urdf::ModelInterface& urdf, const UrdfOutline& outline,
+                        const ShapeLines& shape_lines, const std::string& where);
 
 }  // namespace hires::robot

@@ -96,6 +96,7 @@ class WorldBuilder {
     const auto by_name = [](const auto& a, const auto& b) { return ComesBefore(a.name, b.name); };
     std::sort(world_.statics.begin(), world_.statics.end(), by_name);
     std::sort(world_.initial.objects.begin(), world_.initial.objects.end(), by_name);
+    for (const std::string& doubt : meshes_.Doubts()) world_.notes.push_back(doubt);
     world_.hash = world_.ComputeHash();
     return std::move(world_);
   }
@@ -183,7 +184,8 @@ class WorldBuilder {
     world_.statics.push_back({model.name, model.X_MB, std::move(model.shapes.collisions)});
     const StaticBody& body = world_.statics.back();
     for (const geometry::Collision& shape : body.collisions)
-      world_.sources[NameOf(body, shape)] = model.shapes.places[shape.name];
+      world_.sources[NameOf(body, shape)] =
+          model.shapes.places[shape.name] + meshes_.DoubtAbout(shape.shape);
   }
 
   void SetFloor(double friction, const std::string& where) {

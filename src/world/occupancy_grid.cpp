@@ -75,8 +75,29 @@ geometry::Aabb BoundsOf(const World& world) {
   return bounds;
 }
 
-/// A free grid around x, y of `bounds`, its cell edges on whole multiples of the resolution.
-OccupancyGrid GridAround(const geometry::Aabb& bounds, double resolution, double margin) {
+/// "; 'shelf' (w.world:5) alone is 400 x 1200 m large" of the largest body from above, as a slip of
+/// its units may be the cause.
+std::string LargestText(const World& world) {
+  double largest = 0.0;
+  std::string text;
+  for (const StaticBody& body : world.statics) {
+    for (const geometry::Collision& shape : body.collisions) {
+      const geometry::Aabb bounds = geometry::BoundsOf(shape.shape, body.X_MB * shape.X_BS);
+      const Eigen::Vector3d size = bounds.upper - bounds.lower;
+      if (size.head<2>().maxCoeff() <= largest) continue;
+      largest = size.head<2>().maxCoeff();
+      const std::string name = NameOf(body, shape), source = SourceOf(name, world);
+      text = fmt::format("; '{}'{} alone is {:.4g} x {:.4g} m large", name,
+                         source.empty() ? "" : " (" + source + ")", size.x(), size.y());
+    }
+  }
+  return text;
+}
+
+/// A free grid around x, y of the world's bodies, its cell edges on whole multiples of the
+/// resolution.
+OccupancyGrid GridAround(const World& world, double resolution, double margin) {
+  const geometry::Aabb bounds = BoundsOf(world);
   const Eigen::Array2d lower =
       ((bounds.lower.head<2>().array() - margin) / resolution + kTouch).floor();
   const Eigen::Array2d upper =
@@ -85,8 +106,8 @@ OccupancyGrid GridAround(const geometry::Aabb& bounds, double resolution, double
   if (!(size.prod() <= kMaxCells)) {
     throw base::ConfigError(fmt::format(
         "a grid of {:g} x {:g} cells of {} m is too large, at most {:g} cells; take a coarser "
-        "resolution",
-        size.x(), size.y(), resolution, kMaxCells));
+        "resolution{}",
+        size.x(), size.y(), resolution, kMaxCells, LargestText(world)));
   }
   OccupancyGrid grid;
   grid.resolution = resolution;
@@ -243,7 +264,7 @@ OccupancyGrid SliceWorld(const World& world, double z_min, double z_max, double 
   HIRES_CHECK(resolution > 0.0 && std::isfinite(resolution), "a cell has an edge above 0 m");
   HIRES_CHECK(margin >= 0.0 && std::isfinite(margin), "a margin is not negative");
   HIRES_CHECK(z_min <= z_max, "a band of heights ends above its begin");
-  OccupancyGrid grid = GridAround(BoundsOf(world), resolution, margin);
+  OccupancyGrid grid = GridAround(world, resolution, margin);
   for (const geometry::Polygon& outline : OutlinesInBand(world, nullptr, z_min, z_max)) {
     Occupy(outline, &grid);
   }
@@ -256,7 +277,7 @@ std::optional<OccupancyGrid> FloorHoles(const World& world, double depth, double
   HIRES_CHECK(margin >= 0.0 && std::isfinite(margin), "a margin is not negative");
   HIRES_CHECK(depth >= 0.0 && std::isfinite(depth), "what is driven over is not negative");
   if (world.ground_depth <= depth) return std::nullopt;
-  OccupancyGrid holes = GridAround(BoundsOf(world), resolution, margin);
+  OccupancyGrid holes = GridAround(world, resolution, margin);
   const int parts = PartsOfCell(holes);
   OccupancyGrid fine = Finer(holes, parts);
   for (const geometry::Polygon& outline : OutlinesInBand(world, nullptr, -depth, kFloorStep)) {

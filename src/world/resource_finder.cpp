@@ -7,8 +7,10 @@
 #include <filesystem>
 #include <sdf/parser.hh>
 
+#include "base/files/nearest_file.h"
 #include "hires/base/error.h"
 #include "hires/base/text.h"
+#include "world/files/missing_files.h"
 
 namespace hires::world {
 namespace {
@@ -90,18 +92,33 @@ std::string ResourceFinder::FindIn(const std::vector<std::string>& folders, cons
       return beside.string();
     }
   }
-  throw base::ConfigError(
-      fmt::format("{}: '{}' is not there; looked in {}; add its folder to the model path or to "
-                  "GAZEBO_MODEL_PATH",
-                  where, uri, folders.empty() ? "no folder" : base::Join(folders, ", ")));
+  throw base::ConfigError(WhyNoModel(uri, folders, where));
 }
 
-std::string ResourceFinder::FindByScheme(const std::string& uri, const std::string& where) const {
+/// As rospack finds packages; else a folder of that name, without a package.xml, on the same path.
+std::string ResourceFinder::FindInPackages(const std::string& uri, const std::string& near,
+                                           const std::string& where) const {
+  std::vector<std::string> folders = model_folders_;
+  if (!near.empty()) folders.insert(folders.begin(), near);
+  try {
+    return packages_.Find(uri, folders);
+  } catch (const base::ConfigError& error) {
+    try {
+      return FindIn(package_folders_, uri, where);
+    } catch (const base::ConfigError&) {
+      throw base::ConfigError(fmt::format("{}: {}", where, error.what()));
+    }
+  }
+}
+
+std::string ResourceFinder::FindByScheme(const std::string& uri, const std::string& near,
+                                         const std::string& where) const {
   if (StartsWith(uri, "model://")) return FindIn(model_folders_, uri, where);
-  if (StartsWith(uri, "package://")) return FindIn(package_folders_, uri, where);
+  if (StartsWith(uri, "package://")) return FindInPackages(uri, near, where);
   if (StartsWith(uri, "file:///")) {
     if (Exists(uri.substr(7))) return uri.substr(7);
-    throw base::ConfigError(fmt::format("{}: '{}' is not there; check the path", where, uri));
+    throw base::ConfigError(fmt::format("{}: '{}' is not there{}; correct the path", where, uri,
+                                        base::DidYouMeanFile(uri.substr(7))));
   }
   throw base::ConfigError(
       fmt::format("{}: '{}' cannot be reached; write model://name, package://name/... or "
@@ -110,7 +127,7 @@ std::string ResourceFinder::FindByScheme(const std::string& uri, const std::stri
 }
 
 std::string ResourceFinder::FindModel(const std::string& uri, const std::string& where) const {
-  const std::string path = FindByScheme(uri, where);
+  const std::string path = FindByScheme(uri, "", where);
   if (!IsFolder(path)) return path;
   if (!Exists(fs::path(path) / "model.config")) {
     throw base::ConfigError(fmt::format(
@@ -129,8 +146,8 @@ std::string ResourceFinder::FindModel(const std::string& uri, const std::string&
 
 std::string ResourceFinder::FindMesh(const std::string& uri, const std::string& from_file,
                                      const std::string& where) const {
-  if (uri.find("://") != std::string::npos) return FindByScheme(uri, where);
   const fs::path folder = fs::absolute(from_file).parent_path();
+  if (uri.find("://") != std::string::npos) return FindByScheme(uri, folder.string(), where);
   const fs::path path = (folder / uri).lexically_normal();
   const auto holds = [&](const fs::path& root) { return IsBelow(path, root); };
   if (!holds(folder) && std::none_of(model_folders_.begin(), model_folders_.end(), holds)) {
@@ -140,8 +157,8 @@ std::string ResourceFinder::FindMesh(const std::string& uri, const std::string& 
         where, uri));
   }
   if (Exists(path)) return path.string();
-  throw base::ConfigError(
-      fmt::format("{}: mesh '{}' is not there; looked for {}", where, uri, path.string()));
+  throw base::ConfigError(fmt::format("{}: mesh '{}' is not there; looked for {}{}", where, uri,
+                                      path.string(), base::DidYouMeanFile(path.string())));
 }
 
 std::vector<std::string> ModelFoldersFor(const std::string& file,

@@ -3,6 +3,8 @@
 #include <string>
 #include <vector>
 
+#include "base/files/package_finder.h"
+
 namespace hires::world {
 
 /// Turns the URIs of world and object files into paths: model://name/..., package://name/...,
@@ -10,7 +12,8 @@ namespace hires::world {
 class ResourceFinder {
  public:
   /// @param folders  Where model:// and package:// names are looked for, in this order; folders
-  /// that do not exist are left out. package:// is looked for in ROS_PACKAGE_PATH as well.
+  /// that do not exist are left out. package:// is looked for as base::PackageFinder does, near
+  /// them and near the file that names it.
   explicit ResourceFinder(const std::vector<std::string>& folders);
 
   /// The SDF file that an <include> names: a file, or a model folder with its model.config.
@@ -30,10 +33,15 @@ class ResourceFinder {
  private:
   std::string FindIn(const std::vector<std::string>& folders, const std::string& uri,
                      const std::string& where) const;
-  std::string FindByScheme(const std::string& uri, const std::string& where) const;
+  std::string FindInPackages(const std::string& uri, const std::string& near,
+                             const std::string& where) const;
+  /// @param near  folder of the file that names it, or "".
+  std::string FindByScheme(const std::string& uri, const std::string& near,
+                           const std::string& where) const;
 
   std::vector<std::string> model_folders_;
   std::vector<std::string> package_folders_;
+  base::PackageFinder packages_;
 };
 
 /// Folders for a world file: models/ and the folder beside it, `model_path`, then what the

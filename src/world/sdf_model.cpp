@@ -13,7 +13,9 @@
 #include <sdf/Mesh.hh>
 #include <sdf/Plane.hh>
 #include <sdf/Sphere.hh>
+#include <set>
 
+#include "geometry/mesh_units.h"
 #include "hires/base/error.h"
 #include "hires/geometry/mesh_reader.h"
 #include "world/sdf_file.h"
@@ -228,8 +230,22 @@ std::shared_ptr<const geometry::TriangleMesh> MeshCache::Read(const std::string&
     } catch (const base::ConfigError& error) {
       throw base::ConfigError(fmt::format("{}: {}", where, error.what()));
     }
+    const std::string doubt = geometry::DoubtedUnit(path, *mesh, scale, {}, "<scale>{}</scale>");
+    if (!doubt.empty()) doubts_[mesh.get()] = doubt;
   }
   return mesh;
+}
+
+std::vector<std::string> MeshCache::Doubts() const {
+  std::set<std::string> doubts;  // in an order that no address decides
+  for (const auto& [mesh, doubt] : doubts_) doubts.insert(doubt);
+  return {doubts.begin(), doubts.end()};
+}
+
+std::string MeshCache::DoubtAbout(const geometry::Shape& shape) const {
+  const auto* mesh = std::get_if<std::shared_ptr<const geometry::TriangleMesh>>(&shape);
+  const auto found = mesh == nullptr ? doubts_.end() : doubts_.find(mesh->get());
+  return found == doubts_.end() ? "" : "; " + found->second;
 }
 
 void CheckPose(const geometry::Pose3& pose, const std::string& where) {

@@ -6,6 +6,7 @@
 #include <sdf/Model.hh>
 #include <sdf/SemanticPose.hh>
 #include <string>
+#include <vector>
 
 #include "hires/world/world.h"
 #include "world/resource_finder.h"
@@ -23,8 +24,14 @@ class MeshCache {
                                                      const Eigen::Vector3d& scale,
                                                      const std::string& where);
 
+  /// Those that are hardly in metres, a sentence each with file, size and remedy.
+  std::vector<std::string> Doubts() const;
+  /// "; mesh ... is ..." of a shape that is such a mesh; else "".
+  std::string DoubtAbout(const geometry::Shape& shape) const;
+
  private:
   std::map<std::string, std::shared_ptr<const geometry::TriangleMesh>> meshes_;
+  std::map<const geometry::TriangleMesh*, std::string> doubts_;
 };
 
 /// @throws base::ConfigError if `shape` has a size that is not finite and above 0, or `pose` is not

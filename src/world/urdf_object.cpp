@@ -9,6 +9,7 @@
 #include "hires/base/error.h"
 #include "hires/base/text.h"
 #include "world/console_bridge_capture.h"
+#include "world/files/missing_files.h"
 #include "world/sdf_file.h"
 #include "world/sdf_model.h"
 
@@ -87,14 +88,40 @@ double FrictionOf(const std::string& text, const std::string& link, const std::s
   return 1.0;
 }
 
+std::string CollisionName(const urdf::Collision& collision, std::size_t index) {
+  return collision.name.empty() ? fmt::format("collision_{}", index + 1) : collision.name;
+}
+
+std::string WhereIs(const urdf::Link& link, const std::string& collision, const std::string& path) {
+  return fmt::format("{}: link '{}', collision '{}'", path, link.name, collision);
+}
+
+/// All at once.
+void RefuseMissingMeshes(const urdf::Link& link, const std::string& path,
+                         const ResourceFinder& finder) {
+  MissingFiles missing;
+  for (std::size_t i = 0; i < link.collision_array.size(); ++i) {
+    const urdf::Collision& collision = *link.collision_array[i];
+    const auto* mesh = dynamic_cast<const urdf::Mesh*>(collision.geometry.get());
+    if (mesh == nullptr) continue;
+    const std::string where = WhereIs(link, CollisionName(collision, i), path);
+    try {
+      finder.FindMesh(mesh->filename, path, where);
+    } catch (const base::ConfigError& error) {
+      missing.Add(where, error.what());
+    }
+  }
+  missing.ThrowIfAny(path);
+}
+
 std::vector<geometry::Collision> CollisionsOf(const urdf::Link& link, double friction,
                                               const std::string& path,
                                               const ResourceFinder& finder) {
   std::vector<geometry::Collision> collisions;
+  RefuseMissingMeshes(link, path, finder);
   for (const urdf::CollisionSharedPtr& in : link.collision_array) {
-    const std::string name =
-        in->name.empty() ? fmt::format("collision_{}", collisions.size() + 1) : in->name;
-    const std::string where = fmt::format("{}: link '{}', collision '{}'", path, link.name, name);
+    const std::string name = CollisionName(*in, collisions.size());
+    const std::string where = WhereIs(link, name, path);
     if (in->geometry == nullptr) throw base::ConfigError(where + ": has no <geometry>; add one");
     collisions.push_back({name, ShapeOf(*in->geometry, path, finder, where),
                           ToPose(in->origin, where), friction, 0.0});

@@ -8,6 +8,7 @@
 
 #include "hires/base/error.h"
 #include "hires/base/text.h"
+#include "world/files/missing_files.h"
 
 namespace hires::world {
 namespace {
@@ -43,6 +44,7 @@ class XmlWalk {
   }
 
   const XmlInventory& inventory() const { return inventory_; }
+  const MissingFiles& missing() const { return missing_; }
 
  private:
   void CheckIncludes(const std::string& path) const {
@@ -72,6 +74,7 @@ class XmlWalk {
     }
     names->insert(element.Name());
     if (finder_ != nullptr && element.Name() == std::string("include")) Include(element, place);
+    if (finder_ != nullptr && element.Name() == std::string("mesh")) LookForMesh(element, path);
     for (const auto* child = element.FirstChildElement(); child != nullptr;
          child = child->NextSiblingElement()) {
       VisitElement(*child, path, depth + 1, names);
@@ -84,7 +87,34 @@ class XmlWalk {
       throw base::ConfigError(
           fmt::format("{}: <include> has no <uri>; add <uri>model://name</uri>", place));
     }
-    VisitFile(finder_->FindModel(uri->GetText(), place));
+    std::string file;
+    try {
+      file = finder_->FindModel(uri->GetText(), place);
+    } catch (const base::ConfigError& error) {
+      missing_.Add(place, error.what());  // to be told with all others
+      return;
+    }
+    VisitFile(file);
+  }
+
+  /// Of a collision: meshes that are only looked at are not read.
+  void LookForMesh(const tinyxml2::XMLElement& mesh, const std::string& path) {
+    const tinyxml2::XMLNode* collision =
+        mesh.Parent() == nullptr ? nullptr : mesh.Parent()->Parent();
+    const auto* uri = mesh.FirstChildElement("uri");
+    if (uri == nullptr || uri->GetText() == nullptr || collision == nullptr ||
+        collision->Value() != std::string("collision")) {
+      return;
+    }
+    const std::string place = fmt::format("{}:{}", path, uri->GetLineNum());
+    const char* name = collision->ToElement()->Attribute("name");
+    const std::string where =
+        name == nullptr ? place : fmt::format("{}: collision '{}'", place, name);
+    try {
+      finder_->FindMesh(uri->GetText(), path, where);
+    } catch (const base::ConfigError& error) {
+      missing_.Add(place, error.what());
+    }
   }
 
   const ResourceFinder* finder_;  // null: includes are not followed
@@ -92,6 +122,7 @@ class XmlWalk {
   int num_elements_{0};
   std::vector<std::string> open_files_;
   XmlInventory inventory_;
+  MissingFiles missing_;
 };
 
 }  // namespace
@@ -104,6 +135,7 @@ XmlInventory CheckXmlFile(const std::string& path, const ResourceFinder& finder,
                           const XmlLimits& limits) {
   XmlWalk walk(&finder, limits);
   walk.VisitFile(path);
+  walk.missing().ThrowIfAny(path);
   return walk.inventory();
 }
 

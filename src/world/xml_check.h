@@ -30,7 +30,8 @@ using XmlInventory = std::map<std::string, XmlFileInventory>;  ///< by path
 void CheckXml(const std::string& text, const std::string& path, const XmlLimits& limits = {});
 
 /// The same for a file and all files that its <include> elements name.
-/// @throws base::ConfigError as CheckXml; a file or model that is not there, a circle of includes.
+/// @throws base::ConfigError as CheckXml; a circle of includes; files, models and meshes of
+/// collisions that are not there, all at once.
 XmlInventory CheckXmlFile(const std::string& path, const ResourceFinder& finder,
                           const XmlLimits& limits = {});
 

@@ -208,7 +208,7 @@ TEST_F(RobotProfileFile, APlaceThatIsNotGivenIsOnTopOfTheNamedLink) {
     const double height = rng.Uniform(0.4, 1.0), yaw = rng.Uniform(-3.0, 3.0);
     const bool is_upside_down = rng.Bernoulli(0.5);
     const std::string deck = fmt::format(
-        "<joint name=\"j\" type=\"fixed\"><origin xyz=\"0.1 0 {}\" rpy=\"{} 0 {}\"/><parent "
+        "<joint name=\"j\" type=\"fixed\"><origin xyz=\"2 0 {}\" rpy=\"{} 0 {}\"/><parent "
         "link=\"chassis\"/><child link=\"deck\"/></joint><link name=\"deck\"><collision>"
         "<geometry><box size=\"{} {} {}\"/></geometry></collision></link></robot>",
         height, is_upside_down ? M_PI : 0.0, yaw, size.x(), size.y(), size.z());
@@ -218,7 +218,7 @@ TEST_F(RobotProfileFile, APlaceThatIsNotGivenIsOnTopOfTheNamedLink) {
     const Robot robot = LoadRobot(Write("urdf: robots/decked.urdf\ntray_link: deck\n"));
     const auto X_R = ForwardKinematics(robot.model, robot.profile.joints);
     const geometry::Pose3 X_RO = X_R[*robot.model.FindLink("deck")] * robot.profile.X_TO;
-    EXPECT_LT((X_RO.translation - Eigen::Vector3d(0.1, 0.0, height + size.z() / 2)).norm(), 1e-9);
+    EXPECT_LT((X_RO.translation - Eigen::Vector3d(2.0, 0.0, height + size.z() / 2)).norm(), 1e-9);
     EXPECT_NEAR(geometry::TiltOf(X_RO.rotation), 0.0, 1e-9);
   }
 }
@@ -467,8 +467,10 @@ TEST_F(RobotProfileFile, BareUrdfTurnedTrayStillHasItsTopUp) {
   const Robot robot = LoadRobotFromUrdf(folder_.Write("turned.urdf", urdf));
   const auto X_R = ForwardKinematics(robot.model, {});
   const geometry::Pose3 X_RO = X_R[*robot.model.FindLink("Serving_Tray")] * robot.profile.X_TO;
-  // The plate lies 0 .. 0.02 along the turned frame's z: its top is now the frame's origin.
-  EXPECT_TRUE(X_RO.translation.isApprox(Eigen::Vector3d(0.1, 0.0, 0.55), 1e-9));
+  // The plate lies 0 .. 0.02 along the turned frame's z: its top is now the frame's origin. The
+  // post, of 0.02 m, stands on its middle now.
+  EXPECT_NEAR(X_RO.translation.z(), 0.55, 1e-9);
+  EXPECT_GT((X_RO.translation.head<2>() - Eigen::Vector2d(0.1, 0.0)).norm(), 0.07);
   EXPECT_NEAR(geometry::TiltOf(X_RO.rotation), 0.0, 1e-9);
 }
 

@@ -13,6 +13,7 @@
 #include "hires/base/text.h"
 #include "hires/world/occupancy_grid.h"
 #include "hires/world/turned_grid.h"
+#include "world/files/map_size.h"
 #include "world/maps/map_picture.h"
 #include "world/maps/map_yaml.h"
 #include "world/maps/pnm.h"
@@ -244,6 +245,8 @@ OccupancyGrid LoadMap(const std::string& yaml_path) {
   for (const std::string& note : findings.notes) base::Log(base::LogLevel::kWarn, note);
   ThrowErrors(yaml_path, findings);
   grid->notes = findings.notes;
+  const std::string doubt = DoubtedMapSize(*grid, yaml_path);
+  if (!doubt.empty()) grid->notes.push_back(doubt);
   return *std::move(grid);
 }
 

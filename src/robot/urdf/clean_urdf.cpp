@@ -1,0 +1,291 @@
+#include "robot/urdf/clean_urdf.h"
+
+#include <fmt/format.h>
+#include <tinyxml2.h>
+
+#include <Eigen/Cholesky>
+#include <array>
+#include <cmath>
+#include <locale>
+#include <optional>
+#include <set>
+#include <sstream>
+
+#include "hires/base/check.h"
+#include "hires/base/error.h"
+#include "hires/base/log.h"
+#include "hires/base/spelling.h"
+#include "hires/base/text.h"
+#include "hires/geometry/inertia.h"
+#include "hires/geometry/pose.h"
+
+namespace hires::robot {
+namespace {
+
+using tinyxml2::XMLElement;
+
+constexpr double kFarthestCentre = 1e3;  // [m] of a centre of mass: beyond lies a slip of units
+
+/// `count` numbers and nothing else.
+std::optional<std::vector<double>> NumbersIn(const char* text, std::size_t count) {
+  if (text == nullptr) return std::nullopt;
+  std::istringstream in(text);
+  in.imbue(std::locale::classic());
+  std::vector<double> numbers(count, 0.0);
+  for (double& number : numbers) in >> number;
+  if (in.fail() || !(in >> std::ws).eof()) return std::nullopt;
+  return numbers;
+}
+
+std::optional<double> NumberIn(const XMLElement* element, const char* attribute) {
+  const auto numbers =
+      element == nullptr ? std::nullopt : NumbersIn(element->Attribute(attribute), 1);
+  if (!numbers || !std::isfinite(numbers->front())) return std::nullopt;
+  return numbers->front();
+}
+
+/// Of an element's <origin>; the identity where it has none.
+std::optional<geometry::Pose3> OriginOf(const XMLElement& element) {
+  const XMLElement* origin = element.FirstChildElement("origin");
+  if (origin == nullptr) return geometry::Pose3();
+  const auto read = [&](const char* attribute) {
+    return origin->Attribute(attribute) == nullptr ? std::vector<double>{0.0, 0.0, 0.0}
+                                                   : NumbersIn(origin->Attribute(attribute), 3);
+  };
+  const auto xyz = read("xyz"), rpy = read("rpy");
+  if (!xyz || !rpy) return std::nullopt;
+  return geometry::Pose3{{(*xyz)[0], (*xyz)[1], (*xyz)[2]},
+                         geometry::RotationFromRpy((*rpy)[0], (*rpy)[1], (*rpy)[2])};
+}
+
+/// What makes an <inertial> one that no body has.
+struct Doubt {
+  std::string why;         ///< empty: none
+  bool is_useless{false};  ///< the parser, or what weighs a link, would refuse it
+};
+
+Doubt DoubtOf(const XMLElement& inertial) {
+  const auto mass = NumberIn(inertial.FirstChildElement("mass"), "value");
+  if (!mass) return {"it has no mass that is a number", true};
+  const XMLElement* inertia = inertial.FirstChildElement("inertia");
+  std::array<double, 6> moments{};
+  const char* const names[] = {"ixx", "ixy", "ixz", "iyy", "iyz", "izz"};
+  for (int i = 0; i < 6; ++i) {
+    const auto moment = NumberIn(inertia, names[i]);
+    if (!moment) return {fmt::format("its {} is no number", names[i]), true};
+    moments[i] = *moment;
+  }
+  const auto origin = OriginOf(inertial);
+  if (!origin || !origin->IsFinite() ||
+      origin->translation.cwiseAbs().maxCoeff() > kFarthestCentre) {
+    return {"its origin is not three numbers of metres", true};
+  }
+  geometry::MassProperties properties;
+  properties.mass = *mass;
+  properties.I_BBcm << moments[0], moments[1], moments[2], moments[1], moments[3], moments[4],
+      moments[2], moments[4], moments[5];
+  const bool is_useless =
+      !(*mass > 0.0) || Eigen::LLT<Eigen::Matrix3d>(properties.I_BBcm).info() != Eigen::Success;
+  return {geometry::WhyUnphysical(properties), is_useless};
+}
+
+std::string NameOf(const XMLElement& element) {
+  const char* name = element.Attribute("name");
+  return name == nullptr ? "" : name;
+}
+
+/// What was changed of one kind, told at the end as one line.
+struct Told {
+  std::vector<std::string> names;
+  std::string first;  ///< "line 7: mass is 0 kg"
+
+  void Add(const XMLElement& element, const std::string& name, const std::string& what) {
+    if (names.empty()) {
+      first = fmt::format("line {}{}", element.GetLineNum(), what.empty() ? "" : ": " + what);
+    }
+    names.push_back(name);
+  }
+  void Tell(const std::string& where, const char* key, const char* reason) const {
+    if (names.empty()) return;
+    base::Log(base::LogLevel::kWarn,
+              fmt::format("urdf={} {}={} count={} first=\"{}\" reason=\"{}\"", where, key,
+                          base::Join(names, ","), names.size(), first, reason));
+  }
+};
+
+class UrdfCleaner {
+ public:
+  UrdfCleaner(const std::string& xml, const std::string& where) : where_(where) {
+    document_.Parse(xml.data(), xml.size());
+    robot_ = document_.FirstChildElement("robot");
+    HIRES_CHECK(!document_.Error() && robot_ != nullptr, "the outline was read before");
+  }
+
+  CleanUrdf Clean() {
+    robot_->DeleteAttribute("version");  // newer ones are refused, whatever stands in them
+    DeleteAllBut({"link", "joint"}, robot_);
+    for (XMLElement* link = robot_->FirstChildElement("link"); link != nullptr;
+         link = link->NextSiblingElement("link")) {
+      CleanLink(link);
+    }
+    for (XMLElement* joint = robot_->FirstChildElement("joint"); joint != nullptr;
+         joint = joint->NextSiblingElement("joint")) {
+      CleanJoint(joint);
+    }
+    FailUnknownShapes();
+    Tell();
+    tinyxml2::XMLPrinter printer(nullptr, true);
+    document_.Print(&printer);
+    clean_.xml = printer.CStr();
+    return std::move(clean_);
+  }
+
+ private:
+  static void DeleteAllBut(const std::set<std::string>& kept, XMLElement* parent) {
+    for (XMLElement* child = parent->FirstChildElement(); child != nullptr;) {
+      XMLElement* next = child->NextSiblingElement();
+      if (kept.count(child->Name()) == 0) parent->DeleteChild(child);
+      child = next;
+    }
+  }
+
+  void CleanLink(XMLElement* link) {
+    DeleteAllBut({"inertial", "collision"}, link);
+    if (XMLElement* inertial = link->FirstChildElement("inertial")) CheckInertial(link, inertial);
+    std::vector<int>& lines = clean_.shape_lines[NameOf(*link)];
+    for (XMLElement* collision = link->FirstChildElement("collision"); collision != nullptr;
+         collision = collision->NextSiblingElement("collision")) {
+      const XMLElement* geometry = collision->FirstChildElement("geometry");
+      const XMLElement* shape = geometry == nullptr ? nullptr : geometry->FirstChildElement();
+      const int line = (shape == nullptr ? collision : shape)->GetLineNum();
+      lines.push_back(line);
+      if (shape == nullptr) continue;
+      const std::string kind = shape->Name();
+      if (kind == "capsule") {
+        collision = SplitCapsule(link, collision);
+        lines.resize(lines.size() + 2, line);
+      } else if (kind != "box" && kind != "cylinder" && kind != "sphere" && kind != "mesh") {
+        unknown_shapes_.push_back(
+            fmt::format("link '{}': <{}> in line {}", NameOf(*link), kind, line));
+      }
+    }
+  }
+
+  void CheckInertial(XMLElement* link, XMLElement* inertial) {
+    const Doubt doubt = DoubtOf(*inertial);
+    if (doubt.why.empty()) return;
+    inertials_.Add(*inertial, NameOf(*link), doubt.why);
+    if (doubt.is_useless) link->DeleteChild(inertial);
+  }
+
+  [[noreturn]] void FailCapsule(const XMLElement& link, const XMLElement& capsule) const {
+    throw base::ConfigError(fmt::format(
+        "{}: link '{}': a <capsule> has no radius above 0 and length of at least 0, or its "
+        "collision no <origin> of numbers; wanted <capsule radius=\"0.1\" length=\"0.5\"/>; line "
+        "{}",
+        where_, NameOf(link), capsule.GetLineNum()));
+  }
+
+  /// @return the last of the three that take its place.
+  XMLElement* SplitCapsule(XMLElement* link, XMLElement* collision) {
+    XMLElement* geometry = collision->FirstChildElement("geometry");
+    const XMLElement* capsule = geometry->FirstChildElement("capsule");
+    const auto radius = NumberIn(capsule, "radius"), length = NumberIn(capsule, "length");
+    const auto X_LS = OriginOf(*collision);
+    if (!radius || !(*radius > 0.0) || !length || *length < 0.0 || !X_LS)
+      FailCapsule(*link, *capsule);
+    const std::string name = NameOf(*collision);
+    const std::string text = fmt::format("{}", *radius);
+    // A ball has both ends where there is nothing between them.
+    const auto set_shape = [&](XMLElement* in, const char* kind, const std::string& part) {
+      XMLElement* shapes = in->FirstChildElement("geometry");
+      shapes->DeleteChildren();
+      XMLElement* shape = shapes->InsertNewChildElement(kind);
+      shape->SetAttribute("radius", text.c_str());
+      if (!name.empty()) in->SetAttribute("name", (name + part).c_str());
+      return shape;
+    };
+    XMLElement* last = collision;
+    for (const double side : {0.5, -0.5}) {
+      XMLElement* ball = collision->DeepClone(&document_)->ToElement();
+      link->InsertAfterChild(last, ball);
+      set_shape(ball, "sphere", side > 0.0 ? "_top" : "_bottom");
+      MoveTo(*X_LS * geometry::Pose3{{0.0, 0.0, side * *length}, Eigen::Quaterniond::Identity()},
+             ball);
+      last = ball;
+    }
+    if (*length > 0.0) {
+      set_shape(collision, "cylinder", "")
+          ->SetAttribute("length", fmt::format("{}", *length).c_str());
+    } else {
+      set_shape(collision, "sphere", "");
+    }
+    return last;
+  }
+
+  /// A sphere lies the same however it is turned.
+  void MoveTo(const geometry::Pose3& pose, XMLElement* collision) {
+    XMLElement* origin = collision->FirstChildElement("origin");
+    if (origin == nullptr) origin = collision->InsertNewChildElement("origin");
+    const Eigen::Vector3d& p = pose.translation;
+    origin->SetAttribute("xyz", fmt::format("{} {} {}", p.x(), p.y(), p.z()).c_str());
+    origin->DeleteAttribute("rpy");
+  }
+
+  void CleanJoint(XMLElement* joint) {
+    DeleteAllBut({"origin", "axis", "parent", "child", "limit", "mimic"}, joint);
+    const char* type = joint->Attribute("type");
+    const std::string kind = type == nullptr ? "" : type;
+    if (kind == "floating" || kind == "planar") {
+      loose_.Add(*joint, NameOf(*joint), kind);
+      joint->SetAttribute("type", "fixed");
+    }
+    if (kind != "revolute" && kind != "prismatic" && kind != "continuous") {
+      DeleteAllBut({"origin", "axis", "parent", "child"}, joint);
+      return;
+    }
+    XMLElement* limit = joint->FirstChildElement("limit");
+    if (limit == nullptr) {
+      if (kind == "continuous") return;
+      unlimited_.Add(*joint, NameOf(*joint), kind);
+      limit = joint->InsertNewChildElement("limit");
+    }
+    for (const char* key : {"effort", "velocity"}) {
+      if (limit->Attribute(key) == nullptr) limit->SetAttribute(key, "0");
+    }
+  }
+
+  void FailUnknownShapes() const {
+    if (unknown_shapes_.empty()) return;
+    throw base::ConfigError(fmt::format(
+        "{}: no valid URDF: {} not supported: {}; use box, cylinder, sphere, capsule or mesh",
+        where_,
+        unknown_shapes_.size() == 1
+            ? "a collision shape is"
+            : base::Counted(unknown_shapes_.size(), "collision shape") + " are",
+        base::Join(unknown_shapes_, "; ")));
+  }
+
+  void Tell() const {
+    inertials_.Tell(where_, "impossible_inertia",
+                    "no body has such masses or inertias; nothing here uses them");
+    loose_.Tell(where_, "taken_as_fixed", "the base moves by itself, such joints do not");
+    unlimited_.Tell(where_, "held_at_0",
+                    "a joint that turns or slides needs a <limit>, which these have not");
+  }
+
+  std::string where_;
+  tinyxml2::XMLDocument document_;
+  XMLElement* robot_{nullptr};
+  CleanUrdf clean_;
+  Told inertials_, loose_, unlimited_;
+  std::vector<std::string> unknown_shapes_;
+};
+
+}  // namespace
+
+CleanUrdf CleanedUrdf(const std::string& xml, const std::string& where) {
+  return UrdfCleaner(xml, where).Clean();
+}
+
+}  // namespace hires::robot

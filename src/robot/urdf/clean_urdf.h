@@ -1,0 +1,26 @@
+#pragma once
+
+#include <map>
+#include <string>
+#include <vector>
+
+namespace hires::robot {
+
+/// A URDF as the parser gets it.
+struct CleanUrdf {
+  std::string xml;
+  /// Of each link, the lines of its collision shapes in the file, in the parser's order.
+  std::map<std::string, std::vector<int>> shape_lines;
+};
+
+/// Leaves out what no question here needs and the parser would refuse a robot for: looks,
+/// transmissions, plugins, sensors, calibration, masses and inertias that no body can have. Joints
+/// that float or move in a plane are fixed, as the base moves by itself; those without limits that
+/// need some are held at 0, and efforts and velocities that are not said are 0. A capsule
+/// (`<capsule radius length>`, the length that of its straight part) becomes a cylinder and two
+/// spheres. Logs a warning for each kind of what is wrong, with all names, lines and number.
+/// @param xml  a URDF that ReadUrdfOutline accepts.  @param where  the file, for messages.
+/// @throws base::ConfigError for collision shapes of other kinds, all at once with their lines.
+CleanUrdf CleanedUrdf(const std::string& xml, const std::string& where);
+
+}  // namespace hires::robot

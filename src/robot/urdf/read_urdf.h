@@ -1,0 +1,20 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "hires/robot/robot_model.h"
+
+namespace hires::robot {
+
+/// A robot's model, and what is doubtful about it.
+struct UrdfReading {
+  RobotModel model;
+  /// Meshes that are hardly in metres, a sentence each with file, size and remedy.
+  std::vector<std::string> doubts;
+};
+
+/// As ParseRobotModel, with what it would log of units.
+UrdfReading ReadUrdf(const std::string& xml, const std::string& where);
+
+}  // namespace hires::robot

@@ -1,0 +1,177 @@
+#include "robot/urdf/clean_urdf.h"
+
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+
+#include "hires/base/rng.h"
+#include "hires/base/text.h"
+#include "hires/robot/robot_model.h"
+#include "support/log_catcher.h"
+#include "support/messages.h"
+#include "support/rounds.h"
+
+namespace hires::robot::clean_urdf_test {
+namespace {
+
+using hires::test_support::ConfigErrorOf;
+using hires::test_support::LogCatcher;
+using hires::test_support::Rounds;
+using ::testing::AllOf;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+using ::testing::SizeIs;
+
+/// A way to write an <inertial>, and what becomes of it.
+struct Kind {
+  const char* text;
+  bool is_told;
+  bool is_kept;
+};
+
+const std::vector<Kind>& Kinds() {
+  static const std::vector<Kind> kinds{
+      {"", false, false},
+      {"<mass value='2'/><inertia ixx='1' ixy='0' ixz='0' iyy='1' iyz='0' izz='1'/>", false, true},
+      {"<mass value='0'/><inertia ixx='1' ixy='0' ixz='0' iyy='1' iyz='0' izz='1'/>", true, false},
+      {"<mass value='-3'/><inertia ixx='1' ixy='0' ixz='0' iyy='1' iyz='0' izz='1'/>", true, false},
+      {"<mass value='nan'/><inertia ixx='1' ixy='0' ixz='0' iyy='1' iyz='0' izz='1'/>", true,
+       false},
+      {"<inertia ixx='1' ixy='0' ixz='0' iyy='1' iyz='0' izz='1'/>", true, false},
+      {"<mass value='1'/>", true, false},
+      {"<mass value='1'/><inertia ixx='1' iyy='1' izz='1'/>", true, false},
+      {"<mass value='1'/><inertia ixx='much' ixy='0' ixz='0' iyy='1' iyz='0' izz='1'/>", true,
+       false},
+      {"<mass value='1'/><inertia ixx='0' ixy='0' ixz='0' iyy='0' iyz='0' izz='0'/>", true, false},
+      {"<mass value='1'/><inertia ixx='1' ixy='2' ixz='0' iyy='1' iyz='0' izz='1'/>", true, false},
+      {"<origin xyz='0 9e9 0'/><mass value='1'/><inertia ixx='1' ixy='0' ixz='0' iyy='1' iyz='0' "
+       "izz='1'/>",
+       true, false},
+      {"<mass value='1'/><inertia ixx='1' ixy='0' ixz='0' iyy='1' iyz='0' izz='5'/>", true, true}};
+  return kinds;
+}
+
+TEST(CleanUrdfTest, RobotsWithAnyInertialsLoadAndAllThatAreImpossibleAreTold) {
+  base::Rng rng(57);
+  for (int round = 0; round < Rounds(200); ++round) {
+    const int num_links = 1 + rng.Index(7);
+    std::string links, joints;
+    std::vector<int> kinds;
+    std::vector<std::string> told;
+    for (int i = 0; i < num_links; ++i) {
+      kinds.push_back(rng.Index(static_cast<int>(Kinds().size())));
+      const Kind& kind = Kinds()[kinds.back()];
+      const std::string name = fmt::format("part{}", i);
+      if (kind.is_told) told.push_back(name);
+      links += fmt::format(
+          "<link name='{}'>{}</link>\n", name,
+          kind.text[0] == '\0' ? "" : fmt::format("<inertial>{}</inertial>", kind.text));
+      if (i == 0) continue;
+      joints += fmt::format(
+          "<joint name='j{0}' type='fixed'><parent link='part{1}'/><child "
+          "link='part{0}'/></joint>\n",
+          i, rng.Index(i));
+    }
+    const LogCatcher log(base::LogLevel::kWarn);
+    const RobotModel model =
+        ParseRobotModel("<robot name='r'>\n" + links + joints + "</robot>", "drawn.urdf");
+    for (int i = 0; i < num_links; ++i) {
+      const auto link = model.FindLink(fmt::format("part{}", i));
+      EXPECT_EQ(model.links[*link].inertial.has_value(), Kinds()[kinds[i]].is_kept) << kinds[i];
+    }
+    if (told.empty()) {
+      EXPECT_THAT(log.lines, IsEmpty());
+      continue;
+    }
+    ASSERT_THAT(log.lines, SizeIs(1));
+    EXPECT_THAT(log.lines[0],
+                AllOf(HasSubstr("impossible_inertia=" + base::Join(told, ",") + " "),
+                      HasSubstr(fmt::format("count={}", told.size())), HasSubstr("first=\"line ")));
+  }
+}
+
+TEST(CleanUrdfTest, WhatOnlyLooksOrMovesElsewhereIsNoReason) {
+  const LogCatcher log(base::LogLevel::kWarn);
+  const RobotModel model = ParseRobotModel(R"(<robot name="r" version="1.1">
+<material name="empty"/>
+<link name="a"><visual><geometry><cone/></geometry><material name="nowhere"/></visual>
+ <collision><geometry><box size="1 1 1"/></geometry></collision></link>
+<link name="b"><visual/></link>
+<joint name="j" type="continuous"><parent link="a"/><child link="b"/><axis xyz="0 1 0"/>
+ <calibration rising="high"/><safety_controller/><dynamics damping="x"/></joint>
+<transmission name="t"><type/></transmission><sensor name="s" type="ray"/>
+</robot>)",
+                                           "r.urdf");
+  EXPECT_EQ(model.links.size(), 2u);
+  EXPECT_EQ(model.links[0].collisions.size(), 1u);
+  EXPECT_THAT(log.lines, IsEmpty());
+}
+
+TEST(CleanUrdfTest, FloatingPlanarAndUnlimitedJointsAreToldByKind) {
+  const LogCatcher log(base::LogLevel::kWarn);
+  const auto joint = [](int i, const char* type) {
+    return fmt::format(
+        "<link name='l{0}'/><joint name='j{0}' type='{1}'><parent link='base'/><child "
+        "link='l{0}'/></joint>\n",
+        i, type);
+  };
+  const RobotModel model = ParseRobotModel(
+      "<robot name='r'><link name='base'/>\n" + joint(1, "floating") + joint(2, "planar") +
+          joint(3, "revolute") + joint(4, "prismatic") + "</robot>",
+      "r.urdf");
+  EXPECT_EQ(FindJoint(model, "j1")->type, JointType::kFixed);
+  EXPECT_EQ(FindJoint(model, "j2")->type, JointType::kFixed);
+  EXPECT_EQ(FindJoint(model, "j3")->limits->upper, 0.0);
+  ASSERT_THAT(log.lines, SizeIs(2));
+  EXPECT_THAT(log.lines[0], AllOf(HasSubstr("taken_as_fixed=j1,j2"), HasSubstr("line 2")));
+  EXPECT_THAT(log.lines[1], AllOf(HasSubstr("held_at_0=j3,j4"), HasSubstr("line 4")));
+}
+
+TEST(CleanUrdfTest, ACapsuleReachesAsFarAsItShould) {
+  base::Rng rng(3);
+  for (int round = 0; round < Rounds(100); ++round) {
+    const double radius = rng.Uniform(0.02, 0.5);
+    const double length = rng.Bernoulli(0.1) ? 0.0 : rng.Uniform(0.0, 2.0);
+    const Eigen::Vector3d p(rng.Uniform(-1, 1), rng.Uniform(-1, 1), rng.Uniform(-1, 1));
+    const double r = rng.Uniform(-3, 3), t = rng.Uniform(-1, 1), y = rng.Uniform(-3, 3);
+    const RobotModel model = ParseRobotModel(
+        fmt::format("<robot name='r'><link name='a'><collision name='c'><origin xyz='{} {} {}' "
+                    "rpy='{} {} {}'/><geometry><capsule radius='{}' length='{}'/></geometry>"
+                    "</collision><collision><geometry><box size='9 9 9'/></geometry></collision>"
+                    "</link></robot>",
+                    p.x(), p.y(), p.z(), r, t, y, radius, length),
+        "r.urdf");
+    ASSERT_EQ(model.links[0].collisions.size(), 4u);
+    geometry::Aabb bounds;
+    for (int i = 0; i < 3; ++i) {
+      const geometry::Collision& part = model.links[0].collisions[i];
+      bounds.Include(geometry::BoundsOf(part.shape, part.X_BS));
+    }
+    const Eigen::Vector3d along =
+        geometry::RotationFromRpy(r, t, y) * Eigen::Vector3d(0.0, 0.0, 0.5 * length);
+    const Eigen::Vector3d reach = along.cwiseAbs() + Eigen::Vector3d::Constant(radius);
+    EXPECT_TRUE(bounds.upper.isApprox(p + reach, 1e-6)) << bounds.upper.transpose();
+    EXPECT_TRUE(bounds.lower.isApprox(p - reach, 1e-6)) << bounds.lower.transpose();
+  }
+}
+
+TEST(CleanUrdfTest, ShapesThatNobodyKnowsAreToldAllAtOnce) {
+  const std::string error = ConfigErrorOf([] {
+    ParseRobotModel(
+        "<robot name='r'>\n<link name='a'><collision><geometry><cone/></geometry></collision>\n"
+        "<collision><geometry><torus/></geometry></collision></link></robot>",
+        "r.urdf");
+  });
+  EXPECT_THAT(error, AllOf(HasSubstr("link 'a': <cone> in line 2"), HasSubstr("<torus> in line 3"),
+                           HasSubstr("capsule or mesh")));
+}
+
+TEST(CleanUrdfTest, LinesOfShapesAreThoseOfTheFile) {
+  const CleanUrdf clean = CleanedUrdf(
+      "<robot name='r'>\n<link name='a'>\n<collision><geometry>\n<capsule radius='1' length='2'/>"
+      "</geometry></collision>\n<collision/>\n</link></robot>",
+      "r.urdf");
+  EXPECT_THAT(clean.shape_lines.at("a"), ::testing::ElementsAre(4, 4, 4, 5));
+}
+
+}  // namespace
+}  // namespace hires::robot::clean_urdf_test

@@ -1,0 +1,84 @@
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+
+#include "hires/base/rng.h"
+#include "hires/base/text.h"
+#include "hires/robot/load_robot.h"
+#include "support/rounds.h"
+#include "support/temporary_folder.h"
+
+namespace hires::robot::written_profile_test {
+namespace {
+
+using hires::test_support::Rounds;
+using hires::test_support::TemporaryFolder;
+using ::testing::Contains;
+using ::testing::Each;
+using ::testing::HasSubstr;
+using ::testing::Not;
+
+const std::string kRoot = HIRES_SOURCE_DIR;
+
+std::vector<std::string> LinesOf(const std::string& text) {
+  std::vector<std::string> lines = base::Split(text, '\n');
+  lines.pop_back();
+  return lines;
+}
+
+TEST(WriteProfileTest, OurRobotsGiveTheSameRobotBitByBit) {
+  const TemporaryFolder folder;
+  for (const char* name : {"cart", "car", "pr2_tray"}) {
+    const std::string urdf = kRoot + "/urdf/" + name + ".urdf";
+    const std::string text = WriteProfile(urdf, folder.path().string());
+    const Robot robot = LoadRobot(folder.Write(std::string(name) + ".yaml", text));
+    EXPECT_EQ(robot.hash(), LoadRobotFromUrdf(urdf).hash()) << text;
+    EXPECT_THAT(LinesOf(text), Each(HasSubstr("# "))) << "a comment for each line";
+    EXPECT_THAT(robot.assumed, Not(Contains(HasSubstr("motion_sets"))));
+    EXPECT_THAT(robot.assumed, Not(Contains(HasSubstr("base_controller"))));
+  }
+}
+
+/// A box with wheels, an arm, a tray with something on it, as chance has it.
+std::string DrawUrdf(base::Rng* rng) {
+  std::string text = fmt::format(
+      "<robot name='drawn \"{0}\"'>\n<link name='base: #{0}'><collision><origin xyz='{1} {2} {3}'/>"
+      "<geometry><box size='{4} {5} 0.3'/></geometry></collision></link>\n",
+      rng->Index(100), rng->Uniform(-0.2, 0.2), rng->Uniform(-0.2, 0.2), rng->Uniform(-0.1, 0.3),
+      rng->Uniform(0.2, 1.0), rng->Uniform(0.2, 1.0));
+  const std::string root = text.substr(text.find("base: #"));
+  const std::string name = root.substr(0, root.find('\''));
+  const auto add = [&](const std::string& link, const std::string& type, double z,
+                       const std::string& shape) {
+    text += fmt::format(
+        "<link name='{0}'><collision><geometry>{1}</geometry></collision></link>\n<joint "
+        "name='to_{0}' type='{2}'><origin xyz='{3} {4} {5}' rpy='{6} 0 {7}'/><parent link='{8}'/>"
+        "<child link='{0}'/><axis xyz='0 1 0'/><limit lower='0.2' upper='1' velocity='1' "
+        "effort='1'/></joint>\n",
+        link, shape, type, rng->Uniform(-0.3, 0.3), rng->Uniform(-0.3, 0.3), z,
+        type == "continuous" ? 0.0 : 0.1 * rng->Index(2), 0.3 * rng->Index(3), name);
+  };
+  const int num_wheels = rng->Index(4);
+  for (int i = 0; i < num_wheels; ++i)
+    add(fmt::format("wheel{}", i), "continuous", 0.0, "<sphere radius='0.1'/>");
+  if (rng->Bernoulli(0.5)) add("arm", "revolute", 0.3, "<box size='0.8 0.05 0.05'/>");
+  if (rng->Bernoulli(0.7)) add("tray", "fixed", 0.6, "<box size='0.5 0.4 0.02'/>");
+  if (rng->Bernoulli(0.5)) add("lidar", "fixed", 0.65, "<cylinder radius='0.05' length='0.1'/>");
+  return text + "</robot>";
+}
+
+TEST(WriteProfileTest, DrawnRobotsGiveTheSameRobotBitByBit) {
+  base::Rng rng(11);
+  const TemporaryFolder folder;
+  for (int round = 0; round < Rounds(100); ++round) {
+    const std::string urdf = folder.Write("a/drawn robot.urdf", DrawUrdf(&rng));
+    const std::string text = WriteProfile(urdf, (folder.path() / "b").string());
+    const Robot bare = LoadRobotFromUrdf(urdf);
+    const Robot robot = LoadRobot(folder.Write("b/drawn.yaml", text));
+    ASSERT_EQ(robot.hash(), bare.hash()) << text;
+    EXPECT_EQ(robot.base_height, bare.base_height);
+    EXPECT_THAT(LinesOf(text), Each(HasSubstr("# ")));
+  }
+}
+
+}  // namespace
+}  // namespace hires::robot::written_profile_test
