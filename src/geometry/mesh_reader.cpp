@@ -48,10 +48,12 @@ void CheckScale(const std::string& path, const Eigen::Vector3d& scale) {
                          scale.x(), scale.y(), scale.z()));
 }
 
+/// @param is_whole  Nodes and their names are not needed.
 const aiScene& Import(Assimp::Importer* importer, const std::string& path,
-                      const std::string& format, const std::string& bytes) {
+                      const std::string& format, const std::string& bytes, bool is_whole) {
   importer->SetIOHandler(new NoFiles);  // the importer owns it
   importer->SetPropertyBool(AI_CONFIG_IMPORT_COLLADA_IGNORE_UP_DIRECTION, true);
+  importer->SetPropertyBool(AI_CONFIG_IMPORT_COLLADA_USE_COLLADA_NAMES, true);  // not ids
   importer->SetPropertyBool(AI_CONFIG_PP_FD_REMOVE, true);
   importer->SetPropertyInteger(AI_CONFIG_PP_SBP_REMOVE,
                                aiPrimitiveType_POINT | aiPrimitiveType_LINE);
@@ -62,7 +64,8 @@ const aiScene& Import(Assimp::Importer* importer, const std::string& path,
                                    aiComponent_MATERIALS | aiComponent_TEXTURES);
   const aiScene* scene = importer->ReadFileFromMemory(
       bytes.data(), bytes.size(),
-      aiProcess_Triangulate | aiProcess_RemoveComponent | aiProcess_PreTransformVertices |
+      aiProcess_Triangulate | aiProcess_RemoveComponent |
+          (is_whole ? static_cast<unsigned>(aiProcess_PreTransformVertices) : 0u) |
           aiProcess_JoinIdenticalVertices | aiProcess_FindDegenerates | aiProcess_SortByPType,
       format.c_str());
   if (scene == nullptr) {
@@ -88,6 +91,54 @@ void Append(const aiMesh& part, const Eigen::Vector3d& scale, TriangleMesh* mesh
   }
 }
 
+/// What is found of a submesh.
+struct Search {
+  std::string wanted;
+  std::vector<std::string> names;  ///< that there are
+  TriangleMesh mesh;
+};
+
+/// Takes the meshes of nodes that are called so, or that are called so themselves.
+void Visit(const aiScene& scene, const aiNode& node, aiMatrix4x4 X_WParent, Search* search) {
+  const aiMatrix4x4 X_WN = X_WParent * node.mTransformation;
+  const std::string name = node.mName.C_Str();
+  for (unsigned i = 0; i < node.mNumMeshes; ++i) {
+    aiMesh& part = *scene.mMeshes[node.mMeshes[i]];
+    const std::string own = part.mName.C_Str();
+    search->names.push_back(name);
+    if (own != name) search->names.push_back(own);
+    if (name != search->wanted && own != search->wanted) continue;
+    const std::size_t first = search->mesh.vertices.size();
+    Append(part, Eigen::Vector3d::Ones(), &search->mesh);
+    for (std::size_t k = first; k < search->mesh.vertices.size(); ++k) {
+      const Eigen::Vector3d& p = search->mesh.vertices[k];
+      const aiVector3D moved =
+          X_WN * aiVector3D(static_cast<float>(p.x()), static_cast<float>(p.y()),
+                            static_cast<float>(p.z()));
+      search->mesh.vertices[k] = {moved.x, moved.y, moved.z};
+    }
+  }
+  for (unsigned i = 0; i < node.mNumChildren; ++i) Visit(scene, *node.mChildren[i], X_WN, search);
+}
+
+TriangleMesh PartOf(const aiScene& scene, const std::string& path, const Eigen::Vector3d& scale,
+                    const Submesh& submesh) {
+  Search search{submesh.name, {}, {}};
+  if (scene.mRootNode != nullptr) Visit(scene, *scene.mRootNode, aiMatrix4x4(), &search);
+  if (search.mesh.triangles.empty())
+    Fail(path, base::UnknownName("submesh", submesh.name, search.names));
+  Aabb bounds;
+  for (const Eigen::Vector3d& p : search.mesh.vertices) bounds.Include(p);
+  const Eigen::Vector3d middle = submesh.is_centred
+                                     ? Eigen::Vector3d(0.5 * (bounds.lower + bounds.upper))
+                                     : Eigen::Vector3d::Zero();
+  for (Eigen::Vector3d& p : search.mesh.vertices) p = scale.cwiseProduct(p - middle);
+  if (scale.prod() < 0.0) {
+    for (auto& corners : search.mesh.triangles) std::swap(corners[1], corners[2]);
+  }
+  return std::move(search.mesh);
+}
+
 void CheckMesh(const std::string& path, const TriangleMesh& mesh) {
   if (mesh.triangles.empty()) Fail(path, "holds no triangles; export the solid, not its outline");
   if (mesh.triangles.size() > kMaxTriangles) {
@@ -104,14 +155,19 @@ void CheckMesh(const std::string& path, const TriangleMesh& mesh) {
 
 }  // namespace
 
-TriangleMesh ReadMesh(const std::string& path, const Eigen::Vector3d& scale) {
+TriangleMesh ReadMesh(const std::string& path, const Eigen::Vector3d& scale,
+                      const Submesh& submesh) {
   const std::string format = FormatOf(path);
   CheckScale(path, scale);
   const std::string bytes = base::ReadTextFile(path, kMaxBytes);
   Assimp::Importer importer;
-  const aiScene& scene = Import(&importer, path, format, bytes);
+  const bool is_whole = submesh.name.empty();
+  const aiScene& scene = Import(&importer, path, format, bytes, is_whole);
   TriangleMesh mesh;
-  for (unsigned i = 0; i < scene.mNumMeshes; ++i) Append(*scene.mMeshes[i], scale, &mesh);
+  for (unsigned i = 0; is_whole && i < scene.mNumMeshes; ++i) {
+    Append(*scene.mMeshes[i], scale, &mesh);
+  }
+  if (!is_whole) mesh = PartOf(scene, path, scale, submesh);
   CheckMesh(path, mesh);
   return mesh;
 }

@@ -199,6 +199,21 @@ World OnItsFloor(World world, bool has_plane) {
   return world;
 }
 
+World OnItsFloor(World world, const std::optional<FloorPlane>& plane) {
+  constexpr double kRounding = 1e-6;  // [m]
+  if (plane && std::abs(plane->height) > kRounding) {
+    Lower(plane->height, &world);
+    base::Log(
+        base::LogLevel::kWarn,
+        fmt::format("world={} floor={:.3f} m: {} is the floor; its height counts as z = 0, and "
+                    "so do all heights that are given",
+                    world.name, plane->height, plane->where));
+  }
+  if (plane) world.floor_friction = plane->friction;
+  world.hash = world.ComputeHash();
+  return OnItsFloor(std::move(world), plane.has_value());
+}
+
 std::string WhyElsewhere(const World& world, const std::string& area, double step) {
   const auto X_MF = world.FindFrame(area);
   if (!X_MF || std::abs(X_MF->translation.z()) <= step) return "";

@@ -18,6 +18,13 @@ struct FloorFace {
   double bottom{0.0};    ///< [m] of that shape
 };
 
+/// A level plane of a world's file.
+struct FloorPlane {
+  double height;  ///< [m]
+  double friction;
+  std::string where;  ///< for messages
+};
+
 /// The highest level face, of a box, an upright cylinder or a mesh, that lies under a point within
 /// kFloorStep of it.
 std::optional<FloorFace> FaceUnder(const World& world, const Eigen::Vector3d& p_M);
@@ -30,6 +37,10 @@ std::optional<FloorFace> FaceUnder(const World& world, const Eigen::Vector3d& p_
 /// reach down to it, else nothing (World::ground_depth).
 /// @param has_plane  the file has a plane z = 0.
 World OnItsFloor(World world, bool has_plane = false);
+
+/// The same where the file's highest plane is `plane`, at whatever height: what stands on it stands
+/// at z = 0 first.
+World OnItsFloor(World world, const std::optional<FloorPlane>& plane);
 
 /// The mesh without what lies no higher than `top` [m] of the frame W: parts that lie below it as
 /// a whole, and faces of open sheets. Null: nothing is left; the mesh itself where nothing is so

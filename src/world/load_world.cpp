@@ -11,12 +11,14 @@
 #include <sstream>
 
 #include "hires/base/error.h"
+#include "hires/base/log.h"
 #include "hires/base/text.h"
 #include "hires/world/world.h"
 #include "world/content_hash.h"
 #include "world/floor_level.h"
 #include "world/load_world_in_parts.h"
 #include "world/plain_object.h"
+#include "world/sdf/model_folders.h"
 #include "world/sdf_file.h"
 #include "world/sdf_model.h"
 #include "world/urdf_object.h"
@@ -38,7 +40,7 @@ struct WorldModel {
   std::string where;  ///< for messages
   std::string place;  ///< of a loose one: "hall.world:12"
   geometry::Pose3 X_MB;
-  StaticShapes shapes;                ///< of what is static
+  StaticShapes shapes;                ///< of what is still
   std::optional<ObjectModel> object;  ///< what can move, under the name that its kind should have
 };
 
@@ -47,7 +49,8 @@ std::string NameOfKind(const sdf::Model& model) {
   const sdf::ElementPtr include = model.Element()->GetIncludeElement();
   if (include == nullptr) return model.Name();
   const std::string uri = include->Get<std::string>("uri");
-  const std::string stem = std::filesystem::path(uri).stem().string();
+  const std::string stem = uri.rfind("http", 0) == 0 ? FuelNameOf(uri).model
+                                                     : std::filesystem::path(uri).stem().string();
   return stem.empty() ? model.Name() : stem;
 }
 
@@ -73,38 +76,58 @@ std::optional<Eigen::AlignedBox2d> ExtentIn(sdf::Element& frame, const std::stri
 /// Puts an SDF world together from its parts (see ReadSdfWorld).
 class WorldBuilder {
  public:
-  explicit WorldBuilder(const ResourceFinder* finder) : finder_(finder) {}
+  WorldBuilder(const ResourceFinder* finder, const std::vector<WorldJoint>& joints,
+               LoadNotes* notes)
+      : reading_{*finder, &meshes_, notes}, joints_(joints), notes_(notes) {}
 
   void Add(const SdfWorldPart& part, const std::string& path) {
     const sdf::World& in = part.world;
-    if (part.is_first) SetGravity(in, path);
+    if (part.is_first) Try([&] { SetGravity(in, path); });
     for (std::uint64_t i = 0; i < in.ModelCount(); ++i) {
-      models_[part.places[i]] = WorldModelOf(*in.ModelByIndex(i));
+      Try([&] { models_[part.places[i]] = WorldModelOf(*in.ModelByIndex(i)); });
     }
     if (!part.is_first) return;
     world_.name = in.Name();
-    areas_.clear();
-    for (std::uint64_t i = 0; i < in.FrameCount(); ++i) AddFrame(*in.FrameByIndex(i));
+    for (std::uint64_t i = 0; i < in.FrameCount(); ++i) {
+      Try([&] { AddFrame(*in.FrameByIndex(i)); });
+    }
   }
 
   /// Models keep the order of the file till here, as names of kinds depend on it. What comes out is
   /// in the order of names, so that the layout of the file changes no result.
   World Finish(const std::string& path) {
     CheckNumber(path);
-    for (auto& [place, model] : models_) Place(std::move(model));
-    for (const Area& area : areas_) Place(area);
+    NoteUselessJoints();
+    for (auto& [place, model] : models_) {
+      Try([&] { Place(std::move(model)); });
+    }
+    for (const Area& area : areas_) {
+      Try([&] { Place(area); });
+    }
+    notes_->ThrowIfProblems(path);
+    for (const std::string& note : notes_->Sentences()) {
+      world_.notes.push_back(note);
+      base::Log(base::LogLevel::kWarn, fmt::format("world={} note=\"{}\"", world_.name, note));
+    }
     const auto by_name = [](const auto& a, const auto& b) { return ComesBefore(a.name, b.name); };
     std::sort(world_.statics.begin(), world_.statics.end(), by_name);
     std::sort(world_.initial.objects.begin(), world_.initial.objects.end(), by_name);
     for (const std::string& doubt : meshes_.Doubts()) world_.notes.push_back(doubt);
     world_.hash = world_.ComputeHash();
-    return std::move(world_);
+    return OnItsFloor(std::move(world_), floor_);
   }
 
-  /// Whether the file has a plane z = 0.
-  bool has_plane() const { return !floor_.empty(); }
-
  private:
+  /// What is wrong with one thing is no reason not to look at the others.
+  template <typename Action>
+  void Try(Action action) {
+    try {
+      action();
+    } catch (const base::ConfigError& error) {
+      notes_->AddProblem(error.what());
+    }
+  }
+
   struct Area {
     std::string name;
     std::string where;  ///< for messages
@@ -130,17 +153,42 @@ class WorldBuilder {
     result.name = model.Name();
     result.where = Where(model);
     result.X_MB = PoseIn(model.SemanticPose(), "", result.where);
-    if (IsStatic(model)) {
-      result.shapes = StaticShapesOf(model, result.X_MB, *finder_, &meshes_);
-      std::sort(result.shapes.collisions.begin(), result.shapes.collisions.end(),
-                [](const auto& a, const auto& b) { return a.name < b.name; });
-    } else {
-      result.object = LooseObjectOf(model, *finder_, &meshes_);
+    PlayedModel played = PlayedModelOf(model, result.X_MB, HoldOf(model), reading_);
+    result.shapes = std::move(played.shapes);
+    result.object = std::move(played.object);
+    if (result.object) {
       result.object->name = NameOfKind(model);
       result.place = PlaceOf(model.Element());
     }
     return result;
   }
+
+  /// What the world's own joints do with a model.
+  Hold HoldOf(const sdf::Model& model) const {
+    Hold hold = Hold::kNone;
+    for (const WorldJoint& joint : joints_) {
+      const std::string parent = ModelIn(joint.parent), child = ModelIn(joint.child);
+      if (parent != model.Name() && child != model.Name()) continue;
+      const bool is_to_world = parent == "world" || child == "world";
+      if (joint.is_fixed && is_to_world) return Hold::kFixed;
+      hold = Hold::kJoint;
+    }
+    return hold;
+  }
+
+  void NoteUselessJoints() const {
+    std::set<std::string> known{"world"};
+    for (const auto& [place, model] : models_) known.insert(model.name);
+    for (const WorldJoint& joint : joints_) {
+      if (known.count(ModelIn(joint.parent)) > 0 && known.count(ModelIn(joint.child)) > 0) continue;
+      notes_->Add("joint",
+                  "of the world that names no model of it at one end: that end is left out",
+                  joint.place);
+    }
+  }
+
+  /// "door" of "door::leaf".
+  static std::string ModelIn(const std::string& name) { return name.substr(0, name.find("::")); }
 
   void AddFrame(const sdf::Frame& frame) {
     Area area;
@@ -179,7 +227,7 @@ class WorldBuilder {
       world_.sources[model.name] = model.place;  // as of what is static
       return;
     }
-    if (model.shapes.floor_friction) SetFloor(*model.shapes.floor_friction, model.where);
+    for (const FloorPlane& floor : model.shapes.floors) AddFloor(floor);
     if (model.shapes.collisions.empty()) return;  // a floor, or there to be looked at only
     world_.statics.push_back({model.name, model.X_MB, std::move(model.shapes.collisions)});
     const StaticBody& body = world_.statics.back();
@@ -188,13 +236,27 @@ class WorldBuilder {
           model.shapes.places[shape.name] + meshes_.DoubtAbout(shape.shape);
   }
 
-  void SetFloor(double friction, const std::string& where) {
-    if (!floor_.empty()) {
-      throw base::ConfigError(
-          fmt::format("{}: is a second floor beside {}; keep one plane", where, floor_));
+  /// The highest plane is the floor: nothing gets below it.
+  void AddFloor(const FloorPlane& plane) {
+    constexpr double kSame = 1e-6;  // [m]
+    if (floor_) {
+      const bool is_same = std::abs(plane.height - floor_->height) <= kSame;
+      const FloorPlane& lower = plane.height < floor_->height ? plane : *floor_;
+      if (!is_same) {
+        notes_->Add("plane", "below another one, which is the floor: nothing gets there",
+                    lower.where);
+      } else if (plane.friction == floor_->friction) {
+        notes_->Add("plane", "more at the height of the floor: the same floor", plane.where);
+      } else {
+        notes_->Add("plane",
+                    fmt::format("more at the height of the floor, with friction {} instead of {}: "
+                                "the larger one counts",
+                                plane.friction, floor_->friction),
+                    plane.where);
+      }
+      if (is_same ? plane.friction <= floor_->friction : plane.height < floor_->height) return;
     }
-    floor_ = where;
-    world_.floor_friction = friction;
+    floor_ = plane;
   }
 
   /// The key of an equal model that is there already, or of this one, added.
@@ -227,30 +289,38 @@ class WorldBuilder {
     if (area.extent) world_.extents[lower] = *area.extent;
   }
 
-  const ResourceFinder* finder_;
   MeshCache meshes_;
+  ModelReading reading_;
+  std::vector<WorldJoint> joints_;
+  LoadNotes* notes_;
   World world_;
   std::map<std::size_t, WorldModel> models_;  // by place in the file
   std::vector<Area> areas_;
-  std::string floor_;                           // where the floor was found
+  std::optional<FloorPlane> floor_;
   std::map<std::string, std::string> names_;    // lower case -> where
   std::map<std::uint64_t, std::string> kinds_;  // hash of an object model -> its key
   std::set<std::string> kind_names_;            // lower case
 };
 
 ObjectModel LoadSdfObject(const std::string& path, const ResourceFinder& finder) {
-  const sdf::Root root = ReadSdf(path, finder);
-  if (root.Model() == nullptr) {
+  LoadNotes notes;
+  const std::optional<sdf::Root> root = ReadSdf(path, finder, &notes);
+  notes.ThrowIfProblems(path);
+  const sdf::Model* model = root ? root->Model() : nullptr;
+  if (model == nullptr) {
     throw base::ConfigError(
         fmt::format("{}: has no <model> at its top; an object file holds one", path));
   }
-  if (root.Model()->Static()) {
+  if (model->Static()) {
     throw base::ConfigError(fmt::format(
         "{}: is <static>, so it is no object; remove <static>, or include it in a world",
-        Where(*root.Model())));
+        Where(*model)));
   }
   MeshCache meshes;
-  return LooseObjectOf(*root.Model(), finder, &meshes);
+  ObjectModel object = LooseObjectOf(*model, {finder, &meshes, &notes});
+  for (const std::string& note : notes.Sentences())
+    base::Log(base::LogLevel::kWarn, fmt::format("object={} note=\"{}\"", object.name, note));
+  return object;
 }
 
 }  // namespace
@@ -262,11 +332,12 @@ World LoadWorld(const std::string& sdf_path, const std::vector<std::string>& mod
 World LoadWorldInParts(const std::string& sdf_path, const std::vector<std::string>& model_path,
                        std::size_t models_per_part) {
   const ResourceFinder finder(ModelFoldersFor(sdf_path, model_path));
-  WorldBuilder builder(&finder);
-  ReadSdfWorld(sdf_path, finder, models_per_part,
+  LoadNotes notes;
+  const SdfFiles files = ReadWorldFiles(sdf_path, finder, &notes);
+  WorldBuilder builder(&finder, files.at(sdf_path).world_joints, &notes);
+  ReadSdfWorld(files, sdf_path, models_per_part, &notes,
                [&](const SdfWorldPart& part) { builder.Add(part, sdf_path); });
-  World world = builder.Finish(sdf_path);
-  return OnItsFloor(std::move(world), builder.has_plane());
+  return builder.Finish(sdf_path);
 }
 
 ObjectModel LoadObjectModel(const std::string& path) {

@@ -4,9 +4,12 @@
 #include <iterator>
 #include <map>
 #include <mutex>
+#include <sdf/Error.hh>
 #include <sdf/InterfaceElements.hh>
 #include <sdf/Param.hh>
 #include <sdf/parser.hh>
+
+#include "world/sdf/prune_sdf.h"
 
 namespace hires::world {
 namespace {
@@ -67,9 +70,10 @@ sdf::ElementPtr Trimmed(const sdf::ElementPtr& full, const std::set<std::string>
   return trimmed;
 }
 
-bool IsKnownVersion(const XmlFileInventory& file) {
-  static const std::set<std::string> known{"1.6", "1.7", "1.8", "1.9"};
-  return file.root == "sdf" && known.count(file.version) > 0;
+/// What libsdformat converts older files to may have elements that these do not name.
+bool IsConverted(const SdfFile& file) {
+  static const std::set<std::string> current{"1.6", "1.7", "1.8", "1.9"};
+  return current.count(file.version) == 0;
 }
 
 std::vector<sdf::ElementPtr> ChildrenOf(const sdf::ElementPtr& element) {
@@ -85,18 +89,6 @@ void Insert(const sdf::ElementPtr& child, const sdf::ElementPtr& parent) {
   parent->InsertElement(child);
 }
 
-/// Has it only what PutInPlace knows how to carry over?
-bool IsPlain(const sdf::ElementPtr& include) {
-  const std::set<std::string> known{"uri", "name", "pose", "static"};
-  const auto& attributes = include->GetAttributes();
-  const std::vector<sdf::ElementPtr> children = ChildrenOf(include);
-  return std::none_of(attributes.begin(), attributes.end(),
-                      [](const sdf::ParamPtr& attribute) { return attribute->GetSet(); }) &&
-         std::all_of(children.begin(), children.end(), [&](const sdf::ElementPtr& child) {
-           return known.count(child->GetName()) > 0;
-         });
-}
-
 /// The included `model` under the name, pose and <static> of its <include>.
 sdf::ElementPtr PutInPlace(const sdf::ElementPtr& model, const sdf::ElementPtr& include) {
   sdf::ElementPtr placed = model->Clone();
@@ -104,10 +96,45 @@ sdf::ElementPtr PutInPlace(const sdf::ElementPtr& model, const sdf::ElementPtr& 
   if (include->HasElement("name")) {
     placed->GetAttribute("name")->SetFromString(include->Get<std::string>("name"));
   }
+  if (include->HasElement("placement_frame")) {
+    placed->GetAttribute("placement_frame")
+        ->SetFromString(include->Get<std::string>("placement_frame"));
+  }
   for (const char* part : {"pose", "static"}) {
     if (include->HasElement(part)) placed->GetElement(part)->Copy(include->GetElement(part));
   }
   return placed;
+}
+
+bool IsMerged(const sdf::ElementPtr& include) { return include->HasElement(kMerged); }
+
+/// Names that other elements of a model can name.
+std::set<std::string> NamesIn(const sdf::ElementPtr& model) {
+  std::set<std::string> names;
+  for (const sdf::ElementPtr& child : ChildrenOf(model)) {
+    if (child->HasAttribute("name")) names.insert(child->Get<std::string>("name"));
+  }
+  return names;
+}
+
+void Rename(const std::set<std::string>& names, const std::string& scope,
+            const sdf::ParamPtr& value) {
+  if (value == nullptr) return;
+  const std::string name = value->GetAsString();
+  if (names.count(name.substr(0, name.find("::"))) > 0) value->SetFromString(scope + "::" + name);
+}
+
+/// A model that is merged into another stays a model in it here; so what names its parts without
+/// their scope gets that.
+void NameByScope(const std::set<std::string>& names, const std::string& scope,
+                 const sdf::ElementPtr& element) {
+  for (const char* attribute : {"relative_to", "attached_to", "placement_frame", "canonical_link"})
+    Rename(names, scope, element->GetAttribute(attribute));
+  for (const sdf::ElementPtr& child : ChildrenOf(element)) {
+    const std::string name = child->GetName();
+    if (name == "parent" || name == "child") Rename(names, scope, child->GetValue());
+    if (name != "model") NameByScope(names, scope, child);
+  }
 }
 
 /// Ending of what is left for later by libsdformat.
@@ -134,10 +161,8 @@ sdf::ElementPtr SchemaFor(const std::set<std::string>& elements) {
   return schema;
 }
 
-QuickReader::QuickReader(const ResourceFinder& finder, const XmlInventory& inventory)
-    : finder_(finder), inventory_(inventory) {
-  config_.SetFindCallback(
-      [this](const std::string& uri) { return finder_.FindModel(uri, uri) + kLeaveForLater; });
+QuickReader::QuickReader(const SdfFiles& files, LoadNotes* notes) : files_(files), notes_(notes) {
+  config_.SetFindCallback([](const std::string& uri) { return uri + kLeaveForLater; });
   // With such a parser, libsdformat leaves <include> elements alone whose file has a foreign
   // ending. It would be called by sdf::Root::Load; by then no <include> is left.
   config_.RegisterCustomModelParser(
@@ -145,58 +170,52 @@ QuickReader::QuickReader(const ResourceFinder& finder, const XmlInventory& inven
 }
 
 sdf::SDFPtr QuickReader::Read(const std::string& path) {
-  const auto read = [&](const sdf::SDFPtr& document, sdf::Errors* errors) {
-    return sdf::readFile(path, config_, document, *errors);
-  };
-  return ReadBy(read, path);
+  return ReadPart(files_.at(path).text, path);
 }
 
 sdf::SDFPtr QuickReader::ReadPart(const std::string& text, const std::string& path) {
-  const auto read = [&](const sdf::SDFPtr& document, sdf::Errors* errors) {
-    if (!sdf::readString(text, config_, document, *errors)) return false;
-    SetFilePath(document->Root(), path);
-    return true;
-  };
-  return ReadBy(read, path);
-}
-
-sdf::SDFPtr QuickReader::ReadBy(const ReadInto& read, const std::string& path) {
-  const auto file = inventory_.find(path);
-  if (file == inventory_.end() || !IsKnownVersion(file->second)) return nullptr;
+  const SdfFile& file = files_.at(path);
   const auto document = std::make_shared<sdf::SDF>();
-  document->Root(SchemaFor(file->second.elements)->Clone());
+  document->Root(SchemaFor(IsConverted(file) ? LargeOptionalParts() : file.elements)->Clone());
   sdf::Errors errors;
-  if (!read(document, &errors) || !errors.empty()) return nullptr;
-  return ResolveIncludes(document->Root()) ? document : nullptr;
-}
-
-bool QuickReader::ResolveIncludes(const sdf::ElementPtr& parent) {
-  const std::vector<sdf::ElementPtr> children = ChildrenOf(parent);
-  const auto is_include = [](const auto& child) { return child->GetName() == "include"; };
-  if (std::any_of(children.begin(), children.end(), is_include)) {
-    return ReplaceIncludes(parent, children);
-  }
-  return std::all_of(children.begin(), children.end(),
-                     [this](const auto& child) { return ResolveIncludes(child); });
+  const bool is_read = sdf::readString(text, config_, document, errors);
+  AddErrors(errors, path, notes_);
+  if (!is_read) return nullptr;
+  SetFilePath(document->Root(), path);
+  ResolveIncludes(document->Root(), path);
+  return document;
 }
 
 /// Keeps the order, as names of kinds of objects depend on it.
-bool QuickReader::ReplaceIncludes(const sdf::ElementPtr& parent,
-                                  const std::vector<sdf::ElementPtr>& children) {
+void QuickReader::ResolveIncludes(const sdf::ElementPtr& parent, const std::string& path) {
+  const std::vector<sdf::ElementPtr> children = ChildrenOf(parent);
+  const auto is_include = [](const auto& child) { return child->GetName() == "include"; };
+  if (std::none_of(children.begin(), children.end(), is_include)) {
+    for (const sdf::ElementPtr& child : children) ResolveIncludes(child, path);
+    return;
+  }
   for (const sdf::ElementPtr& child : children) parent->RemoveChild(child);
   for (const sdf::ElementPtr& child : children) {
-    const bool is_include = child->GetName() == "include";
-    const sdf::ElementPtr wanted = is_include ? Included(child) : child;
-    if (wanted == nullptr || (!is_include && !ResolveIncludes(child))) return false;
-    Insert(wanted, parent);
+    if (!is_include(child)) ResolveIncludes(child, path);
+    const sdf::ElementPtr wanted = is_include(child) ? Included(child, path) : child;
+    if (wanted != nullptr) Insert(wanted, parent);
   }
-  return true;
+  if (parent->GetName() != "model") return;
+  for (const sdf::ElementPtr& child : children) {
+    if (!is_include(child) || !IsMerged(child)) continue;
+    const sdf::ElementPtr model =
+        ModelIn(files_.at(path).includes.at(child->Get<std::string>("uri")));
+    if (model == nullptr) continue;
+    const std::string scope = child->HasElement("name") ? child->Get<std::string>("name")
+                                                        : model->Get<std::string>("name");
+    NameByScope(NamesIn(model), scope, parent);
+  }
 }
 
-sdf::ElementPtr QuickReader::Included(const sdf::ElementPtr& include) {
-  if (!IsPlain(include)) return nullptr;
-  const std::string uri = include->Get<std::string>("uri");
-  const sdf::ElementPtr model = ModelIn(finder_.FindModel(uri, uri));
+sdf::ElementPtr QuickReader::Included(const sdf::ElementPtr& include, const std::string& path) {
+  const auto& includes = files_.at(path).includes;
+  const auto found = includes.find(include->Get<std::string>("uri"));
+  const sdf::ElementPtr model = found == includes.end() ? nullptr : ModelIn(found->second);
   return model == nullptr ? nullptr : PutInPlace(model, include);
 }
 
@@ -205,7 +224,25 @@ sdf::ElementPtr QuickReader::ModelIn(const std::string& path) {
   if (is_new) known->second = Read(path);
   if (known->second == nullptr) return nullptr;
   const std::vector<sdf::ElementPtr> top = ChildrenOf(known->second->Root());
-  return top.size() == 1 && top[0]->GetName() == "model" ? top[0] : nullptr;
+  const auto is_model = [](const auto& element) { return element->GetName() == "model"; };
+  const auto model = std::find_if(top.begin(), top.end(), is_model);
+  return model == top.end() ? nullptr : *model;
+}
+
+void AddErrors(const sdf::Errors& errors, const std::string& path, LoadNotes* notes) {
+  bool has_echo = false;
+  for (const sdf::Error& error : errors) {
+    // Each element around a wrong one reports it again, the innermost one first.
+    const bool is_echo = error.Message().find("Error reading element") == 0 ||
+                         error.Message().find("Failed to load a world") == 0;
+    if (is_echo && has_echo) continue;
+    has_echo = has_echo || is_echo;
+    const bool has_file =
+        error.FilePath() && error.FilePath()->find("data-string") == std::string::npos;
+    std::string line = has_file ? *error.FilePath() : path;
+    if (error.LineNumber()) line += ":" + std::to_string(*error.LineNumber());
+    notes->AddProblem(line + ": " + error.Message());
+  }
 }
 
 }  // namespace hires::world

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <functional>
 #include <map>
 #include <sdf/Element.hh>
 #include <sdf/ParserConfig.hh>
@@ -10,8 +9,8 @@
 #include <string>
 #include <vector>
 
-#include "world/resource_finder.h"
-#include "world/xml_check.h"
+#include "world/sdf/load_notes.h"
+#include "world/sdf/sdf_files.h"
 
 namespace hires::world {
 
@@ -21,36 +20,35 @@ namespace hires::world {
 /// clone it. May be called from several threads.
 sdf::ElementPtr SchemaFor(const std::set<std::string>& elements);
 
-/// Reads SDF files as sdf::readFile does, with the schema of SchemaFor and each included file read
-/// once. What libsdformat says goes to its console.
+/// Reads SDF files as sdf::readFile does, with the schema of SchemaFor, each included file once,
+/// and includes in included files as well. What libsdformat has to object to goes to the notes or
+/// to its console.
 class QuickReader {
  public:
-  /// @param inventory  of the file that is read, by CheckXmlFile with the same finder.
+  /// @param files  by ReadSdfFiles.
   /// @pre both outlive this.
-  QuickReader(const ResourceFinder& finder, const XmlInventory& inventory);
+  QuickReader(const SdfFiles& files, LoadNotes* notes);
   QuickReader(const QuickReader&) = delete;  // its callback knows where it is
   QuickReader& operator=(const QuickReader&) = delete;
 
-  /// Nothing (nullptr) when in doubt: an error, an <include> with more than <uri>, <name>, <pose>
-  /// and <static>, a file that is no SDF of version 1.6 to 1.9.
+  /// Nothing (nullptr) if libsdformat refuses the file.
   sdf::SDFPtr Read(const std::string& path);
 
   /// The same for `text`, which is a part of the file and has its lines.
   sdf::SDFPtr ReadPart(const std::string& text, const std::string& path);
 
  private:
-  using ReadInto = std::function<bool(const sdf::SDFPtr& document, sdf::Errors* errors)>;
-
-  sdf::SDFPtr ReadBy(const ReadInto& read, const std::string& path);
-  bool ResolveIncludes(const sdf::ElementPtr& parent);
-  bool ReplaceIncludes(const sdf::ElementPtr& parent, const std::vector<sdf::ElementPtr>& children);
-  sdf::ElementPtr Included(const sdf::ElementPtr& include);
+  void ResolveIncludes(const sdf::ElementPtr& parent, const std::string& path);
+  sdf::ElementPtr Included(const sdf::ElementPtr& include, const std::string& path);
   sdf::ElementPtr ModelIn(const std::string& path);
 
-  const ResourceFinder& finder_;
-  const XmlInventory& inventory_;
+  const SdfFiles& files_;
+  LoadNotes* notes_;
   sdf::ParserConfig config_;
   std::map<std::string, sdf::SDFPtr> documents_;  // of included files
 };
+
+/// Each of libsdformat's errors as a problem, with file and line as far as known.
+void AddErrors(const sdf::Errors& errors, const std::string& path, LoadNotes* notes);
 
 }  // namespace hires::world

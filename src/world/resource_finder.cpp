@@ -5,12 +5,10 @@
 #include <algorithm>
 #include <cstdlib>
 #include <filesystem>
-#include <sdf/parser.hh>
 
-#include "base/files/nearest_file.h"
 #include "hires/base/error.h"
 #include "hires/base/text.h"
-#include "world/files/missing_files.h"
+#include "world/sdf/model_folders.h"
 
 namespace hires::world {
 namespace {
@@ -19,16 +17,6 @@ namespace fs = std::filesystem;
 
 bool StartsWith(const std::string& text, const std::string& start) {
   return text.compare(0, start.size(), start) == 0;
-}
-
-bool Exists(const fs::path& path) {
-  std::error_code ignored;
-  return fs::exists(path, ignored);
-}
-
-bool IsFolder(const fs::path& path) {
-  std::error_code ignored;
-  return fs::is_directory(path, ignored);
 }
 
 /// ".." in a URI would lead out of the folder that the name was found in.
@@ -52,14 +40,43 @@ std::vector<std::string> FoldersInEnvironment(const char* variable) {
   return value == nullptr ? std::vector<std::string>{} : base::Split(value, ':');
 }
 
-/// Our own stand-ins for what nearly every Gazebo world includes (sun, ground_plane), where the
-/// user has none. ROS_PACKAGE_PATH names the package itself or the folder that holds it.
-void AppendOwn(std::vector<std::string>* folders) {
-  for (const std::string& place : FoldersInEnvironment("ROS_PACKAGE_PATH")) {
-    for (const char* below : {"worlds/gazebo", "hires/worlds/gazebo"}) {
-      folders->push_back((fs::path(place) / below).string());
+/// "did you mean" for a file that is not there, or for the first of its folders that is not.
+std::string NearestFile(fs::path path) {
+  while (path.has_relative_path() && !IsFolder(path.parent_path())) path = path.parent_path();
+  return Nearest({path.parent_path().string()}, path.filename().string());
+}
+
+std::string NotThere(const std::string& uri, const std::string& name, const std::string& where,
+                     const std::vector<std::string>& folders) {
+  std::string folder_of_name = name.substr(0, name.find('/'));
+  for (const std::string& folder : folders) {
+    if (name.size() > folder_of_name.size() && IsFolder(fs::path(folder) / folder_of_name)) {
+      return fmt::format("{}: '{}' is not there; looked for {}{}", where, uri,
+                         (fs::path(folder) / name).string(), NearestFile(fs::path(folder) / name));
     }
   }
+  return fmt::format(
+      "{}: '{}' is not there; looked in {}; add its folder to the model path or to "
+      "one of {}{}",
+      where, uri, folders.empty() ? "no folder" : base::Join(folders, ", "), ModelVariables(),
+      Nearest(folders, folder_of_name));
+}
+
+/// For a command line.
+std::string WithoutBlanks(const std::string& uri) {
+  std::string text;
+  for (const char c : uri) text += c == ' ' ? std::string("%20") : std::string(1, c);
+  return text;
+}
+
+bool IsRelative(const std::string& uri) {
+  return uri.find("://") == std::string::npos ||
+         (StartsWith(uri, "file://") && !StartsWith(uri, "file:///"));
+}
+
+/// "" of no file.
+std::string FolderOf(const std::string& file) {
+  return file.empty() ? "" : fs::absolute(file).parent_path().string();
 }
 
 bool IsBelow(const fs::path& path, const fs::path& folder) {
@@ -92,7 +109,27 @@ std::string ResourceFinder::FindIn(const std::vector<std::string>& folders, cons
       return beside.string();
     }
   }
-  throw base::ConfigError(WhyNoModel(uri, folders, where));
+  throw base::ConfigError(NotThere(uri, name, where, folders));
+}
+
+/// Gazebo would ask a server; what a world holds must not depend on one.
+std::string ResourceFinder::FindOfFuel(const std::string& uri, const std::string& where) const {
+  const FuelName name = FuelNameOf(uri);
+  if (Climbs(name.inside)) {
+    throw base::ConfigError(
+        fmt::format("{}: '{}' leaves its folder by '..'; name the file directly", where, uri));
+  }
+  const std::string folder = FindAlike(model_folders_, name.model);
+  if (folder.empty()) {
+    throw base::ConfigError(fmt::format(
+        "{}; nothing is fetched: put the model into a folder '{}' there, or fetch it once by "
+        "`gz fuel download -u {}`",
+        NotThere(uri, name.model, where, model_folders_), name.model, WithoutBlanks(uri)));
+  }
+  if (name.inside.empty() || Exists(fs::path(folder) / name.inside))
+    return name.inside.empty() ? folder : (fs::path(folder) / name.inside).string();
+  throw base::ConfigError(fmt::format("{}: '{}': {} has no file {}{}", where, uri, folder,
+                                      name.inside, NearestFile(fs::path(folder) / name.inside)));
 }
 
 /// As rospack finds packages; else a folder of that name, without a package.xml, on the same path.
@@ -115,10 +152,11 @@ std::string ResourceFinder::FindByScheme(const std::string& uri, const std::stri
                                          const std::string& where) const {
   if (StartsWith(uri, "model://")) return FindIn(model_folders_, uri, where);
   if (StartsWith(uri, "package://")) return FindInPackages(uri, near, where);
+  if (StartsWith(uri, "https://") || StartsWith(uri, "http://")) return FindOfFuel(uri, where);
   if (StartsWith(uri, "file:///")) {
     if (Exists(uri.substr(7))) return uri.substr(7);
-    throw base::ConfigError(fmt::format("{}: '{}' is not there{}; correct the path", where, uri,
-                                        base::DidYouMeanFile(uri.substr(7))));
+    throw base::ConfigError(fmt::format("{}: '{}' is not there; check the path{}", where, uri,
+                                        NearestFile(uri.substr(7))));
   }
   throw base::ConfigError(
       fmt::format("{}: '{}' cannot be reached; write model://name, package://name/... or "
@@ -126,52 +164,40 @@ std::string ResourceFinder::FindByScheme(const std::string& uri, const std::stri
                   where, uri));
 }
 
-std::string ResourceFinder::FindModel(const std::string& uri, const std::string& where) const {
-  const std::string path = FindByScheme(uri, "", where);
-  if (!IsFolder(path)) return path;
-  if (!Exists(fs::path(path) / "model.config")) {
+/// A path without a scheme, or file://media/... of old worlds: beside the file, else below a folder
+/// of the model path.
+std::string ResourceFinder::FindBeside(const std::string& uri, const std::string& from_file,
+                                       const std::string& where) const {
+  const std::string name = StartsWith(uri, "file://") ? uri.substr(7) : uri;
+  const fs::path folder = fs::absolute(from_file).lexically_normal().parent_path();
+  const fs::path path = (folder / name).lexically_normal();
+  const auto holds = [&](const fs::path& root) { return IsBelow(path, root); };
+  if (!holds(folder) && std::none_of(model_folders_.begin(), model_folders_.end(), holds)) {
     throw base::ConfigError(fmt::format(
-        "{}: '{}' is the folder {}, which has no model.config; add one that names its SDF file",
-        where, uri, path));
+        "{}: '{}' lies outside the folder of its file and the model path; name it by file://, or "
+        "add its folder to the model path",
+        where, uri));
   }
-  base::ReadTextFile(path + "/model.config", 1u << 20);  // bounds what sdformat will read
-  const std::string file = sdf::getModelFilePath(path);
-  if (!Exists(file) || IsFolder(file)) {
-    throw base::ConfigError(
-        fmt::format("{}: '{}': {}/model.config names no SDF file that is there; correct its <sdf>",
-                    where, uri, path));
+  if (Exists(path)) return path.string();
+  for (const std::string& root : model_folders_) {
+    if (!Climbs(name) && Exists(fs::path(root) / name)) return (fs::path(root) / name).string();
   }
-  return file;
+  throw base::ConfigError(fmt::format("{}: '{}' is not there; looked for {}{}", where, uri,
+                                      path.string(), NearestFile(path)));
+}
+
+std::string ResourceFinder::FindModel(const std::string& uri, const std::string& where,
+                                      const std::string& from_file) const {
+  const std::string path = IsRelative(uri) && !from_file.empty()
+                               ? FindBeside(uri, from_file, where)
+                               : FindByScheme(uri, FolderOf(from_file), where);
+  return IsFolder(path) ? ModelFileIn(path, uri, where) : path;
 }
 
 std::string ResourceFinder::FindMesh(const std::string& uri, const std::string& from_file,
                                      const std::string& where) const {
-  const fs::path folder = fs::absolute(from_file).parent_path();
-  if (uri.find("://") != std::string::npos) return FindByScheme(uri, folder.string(), where);
-  const fs::path path = (folder / uri).lexically_normal();
-  const auto holds = [&](const fs::path& root) { return IsBelow(path, root); };
-  if (!holds(folder) && std::none_of(model_folders_.begin(), model_folders_.end(), holds)) {
-    throw base::ConfigError(fmt::format(
-        "{}: mesh '{}' lies outside the folder of its file and the model path; name it by file://, "
-        "or add its folder to the model path",
-        where, uri));
-  }
-  if (Exists(path)) return path.string();
-  throw base::ConfigError(fmt::format("{}: mesh '{}' is not there; looked for {}{}", where, uri,
-                                      path.string(), base::DidYouMeanFile(path.string())));
-}
-
-std::vector<std::string> ModelFoldersFor(const std::string& file,
-                                         const std::vector<std::string>& model_path) {
-  const fs::path folder = fs::absolute(file).parent_path();
-  std::vector<std::string> folders{(folder / "models").string(), folder.string()};
-  folders.insert(folders.end(), model_path.begin(), model_path.end());
-  for (const char* variable : {"GAZEBO_MODEL_PATH", "SDF_PATH"}) {
-    const std::vector<std::string> more = FoldersInEnvironment(variable);
-    folders.insert(folders.end(), more.begin(), more.end());
-  }
-  AppendOwn(&folders);
-  return folders;
+  return IsRelative(uri) ? FindBeside(uri, from_file, where)
+                         : FindByScheme(uri, FolderOf(from_file), where);
 }
 
 }  // namespace hires::world

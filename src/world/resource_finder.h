@@ -8,7 +8,7 @@
 namespace hires::world {
 
 /// Turns the URIs of world and object files into paths: model://name/..., package://name/...,
-/// file:///..., and, for meshes, paths relative to the file that names them.
+/// file:///..., https://... of Fuel, and paths relative to the file that names them.
 class ResourceFinder {
  public:
   /// @param folders  Where model:// and package:// names are looked for, in this order; folders
@@ -16,10 +16,14 @@ class ResourceFinder {
   /// them and near the file that names it.
   explicit ResourceFinder(const std::vector<std::string>& folders);
 
-  /// The SDF file that an <include> names: a file, or a model folder with its model.config.
+  /// The SDF file that an <include> names: a file, or a model folder with its model.config. Nothing
+  /// is fetched: https:// stands for a folder of the name that its last part says (FuelNameOf).
   /// @param where  Opens the error message, "a.world:12".
-  /// @throws base::ConfigError naming the URI, where it was looked for, and the remedy.
-  std::string FindModel(const std::string& uri, const std::string& where) const;
+  /// @param from_file  What a path without a scheme is relative to.
+  /// @throws base::ConfigError naming the URI, where it was looked for, what comes near, and the
+  /// remedy.
+  std::string FindModel(const std::string& uri, const std::string& where,
+                        const std::string& from_file) const;
 
   /// The file of a mesh. A path without a scheme is relative to `from_file`, and must end below the
   /// folder of that file or below a model folder.
@@ -35,18 +39,16 @@ class ResourceFinder {
                      const std::string& where) const;
   std::string FindInPackages(const std::string& uri, const std::string& near,
                              const std::string& where) const;
+  std::string FindOfFuel(const std::string& uri, const std::string& where) const;
   /// @param near  folder of the file that names it, or "".
   std::string FindByScheme(const std::string& uri, const std::string& near,
                            const std::string& where) const;
+  std::string FindBeside(const std::string& uri, const std::string& from_file,
+                         const std::string& where) const;
 
   std::vector<std::string> model_folders_;
   std::vector<std::string> package_folders_;
   base::PackageFinder packages_;
 };
-
-/// Folders for a world file: models/ and the folder beside it, `model_path`, then what the
-/// environment names in GAZEBO_MODEL_PATH and SDF_PATH.
-std::vector<std::string> ModelFoldersFor(const std::string& file,
-                                         const std::vector<std::string>& model_path);
 
 }  // namespace hires::world

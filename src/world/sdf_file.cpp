@@ -7,9 +7,7 @@
 #include <numeric>
 #include <optional>
 #include <sdf/Console.hh>
-#include <sdf/ParserConfig.hh>
 #include <sdf/World.hh>
-#include <sdf/parser.hh>
 #include <set>
 #include <sstream>
 
@@ -17,9 +15,9 @@
 #include "hires/base/log.h"
 #include "hires/base/progress.h"
 #include "hires/base/text.h"
-#include "hires/geometry/inertia.h"
 #include "world/console_bridge_capture.h"
 #include "world/quick_sdf.h"
+#include "world/sdf/file_kind.h"
 #include "world/world_parts.h"
 
 namespace hires::world {
@@ -57,9 +55,6 @@ class ConsoleCapture {
   ConsoleCapture(const ConsoleCapture&) = delete;
   ConsoleCapture& operator=(const ConsoleCapture&) = delete;
 
-  bool IsSilent() const { return text_.str().empty(); }
-  void Forget() { text_.str(""); }
-
   /// What was said, an item per message, colours dropped.
   std::vector<std::string> Messages() const {
     std::vector<std::string> messages;
@@ -92,154 +87,81 @@ std::string TextAfter(const std::string& label, const std::string& message) {
   return begin == std::string::npos ? "" : message.substr(begin);
 }
 
-/// What libsdformat objected to, in the order of discovery, each once.
-class Objections {
- public:
-  explicit Objections(const std::string& path) : path_(path) {}
+/// What it cannot read, libsdformat tries as older formats and as URDF, and tells how that fails.
+bool IsSecondTry(const std::string& error) {
+  return error.find("parse as old deprecated model file") != std::string::npos ||
+         error.find("Unable to call parseURDF") != std::string::npos;
+}
 
-  void Add(const sdf::Errors& errors) {
-    for (const sdf::Error& error : errors) {
-      std::string line = error.FilePath().value_or(path_);
-      if (error.LineNumber()) line += fmt::format(":{}", *error.LineNumber());
-      AddLine(line + ": " + error.Message(), IsEcho(error.Message()));
-    }
-  }
-  void AddLine(const std::string& line, bool is_echo = false) {
-    std::vector<std::string>& lines = is_echo ? echoes_ : lines_;
-    if (std::find(lines.begin(), lines.end(), line) == lines.end()) lines.push_back(line);
-  }
-  void ThrowIfAny() const {
-    // The innermost echo comes first and has the line.
-    std::vector<std::string> lines(echoes_.begin(), echoes_.begin() + (echoes_.empty() ? 0 : 1));
-    lines.insert(lines.end(), lines_.begin(), lines_.end());
-    if (lines.empty()) return;
-    throw base::ConfigError(
-        fmt::format("{}: no valid SDF; correct:\n  {}", path_, base::Join(lines, "\n  ")));
-  }
-
- private:
-  /// Each element around a wrong one reports it again.
-  static bool IsEcho(const std::string& message) {
-    return message.find("Error reading element") == 0 || message.find("Unable to read file") == 0 ||
-           message.find("Failed to load a world") == 0;
-  }
-
-  std::string path_;
-  std::vector<std::string> lines_, echoes_;
-};
-
-void AddConsole(const ConsoleCapture& console, const std::string& path, Objections* objections) {
+void AddConsole(const ConsoleCapture& console, const std::string& path, LoadNotes* notes) {
   const std::vector<std::string> messages = console.Messages();
   for (const std::string& message : std::set<std::string>(messages.begin(), messages.end())) {
     const std::string error = TextAfter("Error", message);
     const std::string warning = TextAfter("Warning", message);
-    if (!error.empty()) objections->AddLine(error);
+    if (!error.empty() && !IsSecondTry(error)) notes->AddProblem(path + ": " + error);
     if (!warning.empty()) {
       base::Log(base::LogLevel::kWarn, fmt::format("world={} sdformat=\"{}\"", path, warning));
     }
   }
 }
 
-double NumberOr(const sdf::ElementPtr& parent, const std::string& name, double otherwise) {
-  return parent->HasElement(name) ? parent->GetElement(name)->Get<double>() : otherwise;
-}
-
-/// libsdformat refuses an impossible inertia as well, but does not say where and why.
-void CheckInertial(const sdf::ElementPtr& inertial) {
-  if (!inertial->HasElement("inertia")) return;
-  const sdf::ElementPtr inertia = inertial->GetElement("inertia");
-  geometry::MassProperties properties;
-  properties.mass = NumberOr(inertial, "mass", 1.0);
-  const char* names[3][3] = {{"ixx", "ixy", "ixz"}, {"ixy", "iyy", "iyz"}, {"ixz", "iyz", "izz"}};
-  for (int i = 0; i < 3; ++i) {
-    for (int k = 0; k < 3; ++k) {
-      properties.I_BBcm(i, k) = NumberOr(inertia, names[i][k], i == k ? 1.0 : 0.0);
-    }
-  }
-  const std::string wrong = geometry::WhyUnphysical(properties);
-  if (wrong.empty()) return;
-  throw base::ConfigError(fmt::format("{}: link '{}': {}; correct its <inertial>",
-                                      PlaceOf(inertial),
-                                      inertial->GetParent()->Get<std::string>("name"), wrong));
-}
-
-void CheckInertials(const sdf::ElementPtr& element) {
-  if (element->GetName() == "inertial") CheckInertial(element);
-  for (auto child = element->GetFirstElement(); child != nullptr; child = child->GetNextElement()) {
-    CheckInertials(child);
-  }
-}
-
-sdf::ParserConfig ConfigFor(const ResourceFinder& finder) {
-  sdf::ParserConfig config;
-  // With these, libsdformat looks where the walk looked, before any place of its own.
-  config.AddURIPath("model://", base::Join(finder.model_folders(), ":"));
-  config.AddURIPath("package://", base::Join(finder.package_folders(), ":"));
-  config.AddURIPath("file://", "/");
-  config.SetFindCallback([&finder](const std::string& uri) { return finder.FindModel(uri, uri); });
-  return config;
-}
-
-/// Nothing if libsdformat had anything to say.
-std::optional<sdf::Root> LoadQuickly(const sdf::SDFPtr& document, const ResourceFinder& finder,
-                                     const ConsoleCapture& console) {
-  if (document == nullptr || !console.IsSilent()) return std::nullopt;
-  CheckInertials(document->Root());
-  sdf::Root root;
-  if (!root.Load(document, ConfigFor(finder)).empty() || !console.IsSilent()) return std::nullopt;
-  return root;
-}
-
-sdf::Root ReadStraight(const std::string& path, const ResourceFinder& finder,
-                       const ConsoleCapture& console) {
-  const sdf::ParserConfig config = ConfigFor(finder);
-  Objections objections(path);
+/// What libsdformat makes of a document; what it objects to becomes problems.
+std::optional<sdf::Root> Load(const sdf::SDFPtr& document, const std::string& path,
+                              LoadNotes* notes) {
+  if (document == nullptr) return std::nullopt;
   sdf::Root root;
   try {
-    sdf::Errors errors;
-    const sdf::SDFPtr document = sdf::readFile(path, config, errors);
-    if (document != nullptr && errors.empty()) {
-      CheckInertials(document->Root());
-      errors = root.Load(document, config);
-    }
-    objections.Add(errors);
-    if (document == nullptr) objections.AddLine(path + ": is no SDF document", true);
-  } catch (const base::ConfigError&) {
-    throw;
+    AddErrors(root.Load(document), path, notes);
   } catch (const std::exception& error) {
-    objections.AddLine(error.what());
+    notes->AddProblem(fmt::format("{}: libsdformat cannot read it: {}", path, error.what()));
+    return std::nullopt;
   }
-  AddConsole(console, path, &objections);
-  objections.ThrowIfAny();
   return root;
 }
 
-/// The quick way if libsdformat is content; else the straight one repeats what it had to say.
-sdf::Root ReadWhole(const std::string& path, const ResourceFinder& finder,
-                    const XmlInventory& inventory, ConsoleCapture* console) {
-  const sdf::SDFPtr document = QuickReader(finder, inventory).Read(path);
-  if (auto root = LoadQuickly(document, finder, *console)) return std::move(*root);
-  console->Forget();
-  return ReadStraight(path, finder, *console);
-}
+/// Reads parts of a world, and hands them on.
+class PartsReader {
+ public:
+  PartsReader(const SdfFiles& files, const std::string& path, LoadNotes* notes,
+              const std::function<void(const SdfWorldPart&)>& use)
+      : reader_(files, notes), path_(path), notes_(notes), use_(use) {}
 
-using UsePart = std::function<void(const SdfWorldPart&)>;
-
-/// @return whether libsdformat was content with all parts.
-bool ReadInParts(const std::vector<WorldPart>& parts, const std::string& path,
-                 const ResourceFinder& finder, const XmlInventory& inventory,
-                 const ConsoleCapture& console, const UsePart& use) {
-  QuickReader reader(finder, inventory);
-  for (std::size_t i = 0; i < parts.size(); ++i) {
-    const auto root = LoadQuickly(reader.ReadPart(parts[i].text, path), finder, console);
-    if (!root || root->WorldCount() != 1) return false;
-    const sdf::World& world = *root->WorldByIndex(0);
-    if (world.ModelCount() != parts[i].places.size()) return false;
-    use({world, parts[i].places, i == 0});
-    base::ReportProgress("reading " + path, static_cast<double>(i + 1) / parts.size());
+  /// A part that libsdformat refuses is read model by model, so that what is wrong with one keeps
+  /// nothing from being said of the others.
+  void Read(const WorldPart& part, bool is_first) {
+    const sdf::SDFPtr document = reader_.ReadPart(part.text, path_);
+    if (document != nullptr) {
+      Use(document, part.places, is_first);
+      return;
+    }
+    const std::vector<WorldPart> smaller = CutWorld(part.text, 1);
+    for (std::size_t i = 0; i < smaller.size(); ++i) {
+      std::vector<std::size_t> places = smaller[i].places;
+      for (std::size_t& place : places) {
+        if (place < part.places.size()) place = part.places[place];
+      }
+      Use(reader_.ReadPart(smaller[i].text, path_), places, is_first && i == 0);
+    }
   }
-  return true;
-}
+
+ private:
+  /// @param places  empty for a whole world.
+  void Use(const sdf::SDFPtr& document, std::vector<std::size_t> places, bool is_first) {
+    const std::optional<sdf::Root> root = Load(document, path_, notes_);
+    if (!root || root->WorldCount() == 0) return;
+    const sdf::World& world = *root->WorldByIndex(0);
+    if (places.size() != world.ModelCount()) {  // the whole, or some could not be read
+      places.resize(world.ModelCount());
+      std::iota(places.begin(), places.end(), 0);
+    }
+    use_({world, places, is_first});
+  }
+
+  QuickReader reader_;
+  const std::string& path_;
+  LoadNotes* notes_;
+  const std::function<void(const SdfWorldPart&)>& use_;
+};
 
 }  // namespace
 
@@ -250,43 +172,58 @@ std::string PlaceOf(const sdf::ElementPtr& element) {
 }
 
 void ThrowIfAny(const sdf::Errors& errors, const std::string& path) {
-  Objections objections(path);
-  objections.Add(errors);
-  objections.ThrowIfAny();
+  if (errors.empty()) return;
+  LoadNotes notes;
+  AddErrors(errors, path, &notes);
+  notes.ThrowIfProblems(path);
 }
 
-sdf::Root ReadSdf(const std::string& path, const ResourceFinder& finder, const XmlLimits& limits,
-                  ReadingWay way) {
+std::optional<sdf::Root> ReadSdf(const std::string& path, const ResourceFinder& finder,
+                                 LoadNotes* notes, const XmlLimits& limits) {
+  ConsoleCapture console;
+  const ConsoleBridgeCapture urdf_console;  // an included URDF is read by urdfdom
+  const SdfFiles files = ReadSdfFiles(path, finder, limits, notes);
+  if (files.at(path).root != "sdf") {
+    throw base::ConfigError(
+        fmt::format("{}: its outermost element is <{}>, wanted <sdf>", path, files.at(path).root));
+  }
+  QuickReader reader(files, notes);
+  std::optional<sdf::Root> root = Load(reader.Read(path), path, notes);
+  AddConsole(console, path, notes);
+  return root;
+}
+
+SdfFiles ReadWorldFiles(const std::string& path, const ResourceFinder& finder, LoadNotes* notes) {
+  ConsoleCapture console;
+  const ConsoleBridgeCapture urdf_console;  // an included URDF is read by urdfdom
+  std::string why = WhyNoWorld(base::ReadTextFile(path, XmlLimits().max_file_bytes), path);
+  if (!why.empty()) throw base::ConfigError(why);
+  SdfFiles files = ReadSdfFiles(path, finder, {}, notes);
+  const SdfFile& file = files.at(path);
+  why = WhyNoWorldBy(file.root, path);
+  if (!why.empty()) throw base::ConfigError(why);
+  if (file.num_worlds != 1) {
+    throw base::ConfigError(fmt::format(
+        "{}: has {} <world> elements, wanted 1{}", path, file.num_worlds,
+        file.num_models > 0 ? "; a model goes with --object, or is included by a world" : ""));
+  }
+  return files;
+}
+
+void ReadSdfWorld(const SdfFiles& files, const std::string& path, std::size_t models_per_part,
+                  LoadNotes* notes, const std::function<void(const SdfWorldPart&)>& use) {
   ConsoleCapture console;
   const ConsoleBridgeCapture urdf_console;  // libsdformat tries what it cannot read as URDF
-  const XmlInventory inventory = CheckXmlFile(path, finder, limits);
-  if (way == ReadingWay::kStraight) return ReadStraight(path, finder, console);
-  return ReadWhole(path, finder, inventory, &console);
-}
-
-void ReadSdfWorld(const std::string& path, const ResourceFinder& finder,
-                  std::size_t models_per_part,
-                  const std::function<void(const SdfWorldPart&)>& use) {
-  ConsoleCapture console;
-  const ConsoleBridgeCapture urdf_console;
-  const XmlLimits limits;
-  const XmlInventory inventory = CheckXmlFile(path, finder, limits);
-  if (inventory.at(path).root == "robot") {
-    throw base::ConfigError(fmt::format(
-        "{}: this is a robot (URDF), wanted a world (SDF); give it with --robot", path));
+  PartsReader reader(files, path, notes, use);
+  const std::string& text = files.at(path).text;
+  std::vector<WorldPart> parts = CutWorld(text, models_per_part);
+  if (parts.empty()) parts.push_back({text, {}});
+  for (std::size_t i = 0; i < parts.size(); ++i) {
+    reader.Read(parts[i], i == 0);
+    if (parts.size() > 1)
+      base::ReportProgress("reading " + path, static_cast<double>(i + 1) / parts.size());
   }
-  const auto parts = CutWorld(base::ReadTextFile(path, limits.max_file_bytes), models_per_part);
-  if (!parts.empty() && ReadInParts(parts, path, finder, inventory, console, use)) return;
-  console.Forget();
-  const sdf::Root root = ReadWhole(path, finder, inventory, &console);
-  if (root.WorldCount() != 1) {
-    throw base::ConfigError(
-        fmt::format("{}: has {} <world> elements, wanted 1", path, root.WorldCount()));
-  }
-  const sdf::World& world = *root.WorldByIndex(0);
-  std::vector<std::size_t> places(world.ModelCount());
-  std::iota(places.begin(), places.end(), 0);
-  use({world, places, true});
+  AddConsole(console, path, notes);
 }
 
 }  // namespace hires::world

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <functional>
+#include <optional>
 #include <sdf/Element.hh>
 #include <sdf/Error.hh>
 #include <sdf/Root.hh>
@@ -8,25 +9,20 @@
 #include <vector>
 
 #include "world/resource_finder.h"
+#include "world/sdf/load_notes.h"
+#include "world/sdf/sdf_files.h"
 #include "world/xml_check.h"
 
 namespace hires::world {
 
-/// Both ways give the same result; the quick one falls back on the straight one whenever
-/// libsdformat objects to anything, so that the messages are the same as well. Only the quick one
-/// follows <include> in included models (libsdformat 12 forgets there where to look).
-enum class ReadingWay {
-  kQuick,     ///< as QuickReader
-  kStraight,  ///< sdf::readFile
-};
-
-/// Reads an SDF file with libsdformat. Nothing is printed; what libsdformat would print as a
-/// warning goes to base::Log.
-/// @throws base::ConfigError: not there, malformed XML, too large, too deep, includes that are
-/// missing or go round in a circle, everything that libsdformat objects to (all in one message,
-/// each with file and line).
-sdf::Root ReadSdf(const std::string& path, const ResourceFinder& finder,
-                  const XmlLimits& limits = {}, ReadingWay way = ReadingWay::kQuick);
+/// Reads an SDF file with libsdformat, cut down to what is needed (PruneSdf). Nothing is printed;
+/// what libsdformat would print as a warning goes to base::Log.
+/// @param notes  gets what is left out, and all that keeps the file from being read, each with file
+/// and line: includes that are missing or go round in a circle, what libsdformat objects to.
+/// @return what could be read; null if that is nothing.
+/// @throws base::ConfigError: the file itself is not there, malformed XML, too large, too deep.
+std::optional<sdf::Root> ReadSdf(const std::string& path, const ResourceFinder& finder,
+                                 LoadNotes* notes, const XmlLimits& limits = {});
 
 /// What was read of a world in one go.
 struct SdfWorldPart {
@@ -35,12 +31,16 @@ struct SdfWorldPart {
   bool is_first;                           ///< has all that is no model
 };
 
+/// ReadSdfFiles for a world.
+/// @throws base::ConfigError as that; a file of another kind, told by its kind, with the option
+/// that takes it; if there is not one world.
+SdfFiles ReadWorldFiles(const std::string& path, const ResourceFinder& finder, LoadNotes* notes);
+
 /// Reads the only world of an SDF file as ReadSdf does, in parts if it has many models, so that the
-/// memory of libsdformat's trees is needed for one part at a time. Where libsdformat has anything
-/// to object to, it begins again, with the whole as the first part.
-/// @throws base::ConfigError as ReadSdf, and if there is not one world.
-void ReadSdfWorld(const std::string& path, const ResourceFinder& finder,
-                  std::size_t models_per_part, const std::function<void(const SdfWorldPart&)>& use);
+/// memory of libsdformat's trees is needed for one part at a time.
+/// @param files  by ReadWorldFiles.
+void ReadSdfWorld(const SdfFiles& files, const std::string& path, std::size_t models_per_part,
+                  LoadNotes* notes, const std::function<void(const SdfWorldPart&)>& use);
 
 /// "file:line", as far as known.
 std::string PlaceOf(const sdf::ElementPtr& element);

@@ -8,7 +8,6 @@
 #include <sdf/Collision.hh>
 #include <sdf/Cylinder.hh>
 #include <sdf/Geometry.hh>
-#include <sdf/Joint.hh>
 #include <sdf/Link.hh>
 #include <sdf/Mesh.hh>
 #include <sdf/Plane.hh>
@@ -18,6 +17,10 @@
 #include "geometry/mesh_units.h"
 #include "hires/base/error.h"
 #include "hires/geometry/mesh_reader.h"
+#include "world/sdf/link_mass.h"
+#include "world/sdf/model_links.h"
+#include "world/sdf/prune_sdf.h"
+#include "world/sdf/shapes.h"
 #include "world/sdf_file.h"
 
 namespace hires::world {
@@ -43,26 +46,24 @@ double NumberAt(sdf::ElementPtr element, const std::vector<std::string>& path, d
   return element->Get<double>();
 }
 
-struct Context {
-  const ResourceFinder& finder;
-  MeshCache* meshes;
-};
-
 std::string WhereIs(const sdf::Collision& collision) {
   return fmt::format("{}: collision '{}'", PlaceOf(collision.Element()), collision.Name());
 }
 
-geometry::Shape MeshOf(const sdf::Mesh& mesh, const Context& context, const std::string& where) {
-  if (!mesh.Submesh().empty()) {
-    throw base::ConfigError(
-        fmt::format("{}: <submesh> '{}' cannot be picked; export it as a mesh file of its own",
-                    where, mesh.Submesh()));
-  }
-  const std::string path = context.finder.FindMesh(mesh.Uri(), mesh.FilePath(), where);
-  return context.meshes->Read(path, ToEigen(mesh.Scale()), where);
+/// "hall.world:5 'door'" for notes.
+std::string NotePlace(const sdf::Model& model) {
+  return fmt::format("{} '{}'", PlaceOf(model.Element()), model.Name());
 }
 
-geometry::Shape ShapeOf(const sdf::Collision& collision, const Context& context) {
+geometry::Shape MeshOf(const sdf::Mesh& mesh, const ModelReading& reading,
+                       const std::string& where) {
+  const std::string path = reading.finder.FindMesh(mesh.Uri(), mesh.FilePath(), where);
+  return reading.meshes->Read(path, ToEigen(mesh.Scale()), where,
+                              {mesh.Submesh(), mesh.CenterSubmesh()});
+}
+
+/// Of what PruneSdf left to libsdformat.
+geometry::Shape ShapeOf(const sdf::Collision& collision, const ModelReading& reading) {
   const sdf::Geometry& geom = *collision.Geom();
   switch (geom.Type()) {
     case sdf::GeometryType::BOX:
@@ -72,10 +73,7 @@ geometry::Shape ShapeOf(const sdf::Collision& collision, const Context& context)
     case sdf::GeometryType::SPHERE:
       return geometry::Sphere{geom.SphereShape()->Radius()};
     case sdf::GeometryType::MESH:
-      return MeshOf(*geom.MeshShape(), context, WhereIs(collision));
-    case sdf::GeometryType::PLANE:
-      throw base::ConfigError(WhereIs(collision) +
-                              ": a plane cannot move; use a box, or make the model <static>");
+      return MeshOf(*geom.MeshShape(), reading, WhereIs(collision));
     default:
       throw base::ConfigError(WhereIs(collision) +
                               ": its shape is not supported; use box, cylinder, sphere, mesh, or a "
@@ -83,150 +81,184 @@ geometry::Shape ShapeOf(const sdf::Collision& collision, const Context& context)
   }
 }
 
-geometry::Collision CollisionOf(const sdf::Collision& collision, const geometry::Pose3& X_BL,
-                                const std::string& prefix, const Context& context) {
+std::vector<ShapePart> ShapesOf(const sdf::Collision& collision, const ModelReading& reading) {
+  if (!OtherShapeOf(collision).empty()) return ShapePartsOf(collision, WhereIs(collision));
+  return {{"", ShapeOf(collision, reading), {}}};
+}
+
+bool IsPlane(const sdf::Collision& collision) {
+  return collision.Geom()->Type() == sdf::GeometryType::PLANE;
+}
+
+/// <empty/>, or a <geometry> that holds nothing.
+bool IsEmpty(const sdf::Collision& collision) {
+  return collision.Geom()->Type() == sdf::GeometryType::EMPTY && OtherShapeOf(collision).empty();
+}
+
+void AppendCollision(const sdf::Collision& collision, const geometry::Pose3& X_BL,
+                     const std::string& prefix, const ModelReading& reading, StaticShapes* shapes) {
   const std::string where = WhereIs(collision);
-  geometry::Collision result;
-  result.name = prefix + collision.Name();
-  result.shape = ShapeOf(collision, context);
-  result.X_BS = X_BL * PoseIn(collision.SemanticPose(), "", where);
-  result.friction =
-      NumberAt(collision.Element(), {"surface", "friction", "ode", "mu"}, result.friction);
-  result.restitution =
-      NumberAt(collision.Element(), {"surface", "bounce", "restitution_coefficient"}, 0.0);
-  CheckCollision(result, where);
-  return result;
+  const geometry::Pose3 X_BC = X_BL * PoseIn(collision.SemanticPose(), "", where);
+  for (const ShapePart& part : ShapesOf(collision, reading)) {
+    geometry::Collision result;
+    result.name = prefix + collision.Name() + part.suffix;
+    result.shape = part.shape;
+    result.X_BS = X_BC * part.X_CS;
+    result.friction =
+        NumberAt(collision.Element(), {"surface", "friction", "ode", "mu"}, result.friction);
+    result.restitution =
+        NumberAt(collision.Element(), {"surface", "bounce", "restitution_coefficient"}, 0.0);
+    CheckCollision(result, where);
+    shapes->places[result.name] = PlaceOf(collision.Element());
+    shapes->collisions.push_back(std::move(result));
+  }
 }
 
-int CountLinks(const sdf::Model& model) {
-  int count = static_cast<int>(model.LinkCount());
-  for (std::uint64_t i = 0; i < model.ModelCount(); ++i) {
-    count += CountLinks(*model.ModelByIndex(i));
+void AppendPlane(const sdf::Collision& collision, const geometry::Pose3& X_WL,
+                 StaticShapes* shapes) {
+  const std::string where = WhereIs(collision);
+  const geometry::Pose3 X_WS = X_WL * PoseIn(collision.SemanticPose(), "", where);
+  const Eigen::Vector3d normal = X_WS.rotation * ToEigen(collision.Geom()->PlaneShape()->Normal());
+  if ((normal - Eigen::Vector3d::UnitZ()).norm() > kFloorTolerance) {
+    throw base::ConfigError(
+        where +
+        ": the only planes supported are level ones that face up, of which the highest is "
+        "the floor; use a static box instead");
   }
-  return count;
+  geometry::Collision floor;
+  floor.friction =
+      NumberAt(collision.Element(), {"surface", "friction", "ode", "mu"}, floor.friction);
+  CheckCollision(floor, where);
+  shapes->floors.push_back({X_WS.translation.z(), floor.friction, where});
 }
 
-/// Collects the shapes of all links of a model and of the models in it.
-class StaticCollector {
- public:
-  StaticCollector(const geometry::Pose3& X_MB, bool has_one_link, const Context& context)
-      : X_MB_(X_MB), has_one_link_(has_one_link), context_(context) {}
-
-  void Visit(const sdf::Model& model, const geometry::Pose3& X_BModel, const std::string& prefix) {
-    for (std::uint64_t i = 0; i < model.LinkCount(); ++i) {
-      const sdf::Link& link = *model.LinkByIndex(i);
-      const geometry::Pose3 X_BL =
-          X_BModel * PoseIn(link.SemanticPose(), "__model__", PlaceOf(link.Element()));
-      VisitLink(link, X_BL, has_one_link_ ? "" : prefix + link.Name() + "::");
-    }
-    for (std::uint64_t i = 0; i < model.ModelCount(); ++i) {
-      const sdf::Model& inner = *model.ModelByIndex(i);
-      Visit(inner, X_BModel * PoseIn(inner.SemanticPose(), "__model__", Where(inner)),
-            prefix + inner.Name() + "::");
-    }
-  }
-
-  StaticShapes result;
-
- private:
-  void VisitLink(const sdf::Link& link, const geometry::Pose3& X_BL, const std::string& prefix) {
-    for (std::uint64_t i = 0; i < link.CollisionCount(); ++i) {
-      const sdf::Collision& collision = *link.CollisionByIndex(i);
-      if (collision.Geom()->Type() == sdf::GeometryType::PLANE) {
-        VisitPlane(collision, X_BL);
-      } else {
-        result.collisions.push_back(CollisionOf(collision, X_BL, prefix, context_));
-        result.places[result.collisions.back().name] = PlaceOf(collision.Element());
+/// All shapes of all links, where they stand at joint zero.
+StaticShapes ShapesOf(const ModelLinks& model, const geometry::Pose3& X_MB,
+                      const ModelReading& reading) {
+  StaticShapes shapes;
+  for (const PlacedLink& link : model.links) {
+    const std::string prefix = model.links.size() == 1 ? "" : link.name + "::";
+    for (std::uint64_t i = 0; i < link.link->CollisionCount(); ++i) {
+      const sdf::Collision& collision = *link.link->CollisionByIndex(i);
+      if (IsEmpty(collision)) continue;
+      try {
+        if (IsPlane(collision)) {
+          AppendPlane(collision, X_MB * link.X_ML, &shapes);
+        } else {
+          AppendCollision(collision, link.X_ML, prefix, reading, &shapes);
+        }
+      } catch (const base::ConfigError& error) {
+        reading.notes->AddProblem(error.what());
       }
     }
   }
+  std::sort(shapes.collisions.begin(), shapes.collisions.end(),
+            [](const auto& a, const auto& b) { return a.name < b.name; });
+  return shapes;
+}
 
-  void VisitPlane(const sdf::Collision& collision, const geometry::Pose3& X_BL) {
-    const std::string where = WhereIs(collision);
-    const geometry::Pose3 X_MS = X_MB_ * X_BL * PoseIn(collision.SemanticPose(), "", where);
-    const Eigen::Vector3d normal =
-        X_MS.rotation * ToEigen(collision.Geom()->PlaneShape()->Normal());
-    const bool is_level = (normal - Eigen::Vector3d::UnitZ()).norm() <= kFloorTolerance;
-    if (!is_level || std::abs(X_MS.translation.z()) > kFloorTolerance) {
-      throw base::ConfigError(where +
-                              ": the only plane supported is the floor, z = 0 facing up; use a "
-                              "static box instead");
+/// A collision whose shape somebody forgot, other than <empty/>.
+bool LacksShape(const sdf::Collision& collision) {
+  const sdf::ElementPtr element = collision.Element();
+  return IsEmpty(collision) &&
+         !(element->HasElement("geometry") && element->GetElement("geometry")->HasElement("empty"));
+}
+
+void NoteMissingShapes(const ModelLinks& model, LoadNotes* notes) {
+  for (const PlacedLink& link : model.links) {
+    for (std::uint64_t i = 0; i < link.link->CollisionCount(); ++i) {
+      const sdf::Collision& collision = *link.link->CollisionByIndex(i);
+      if (!LacksShape(collision)) continue;
+      notes->Add("collision", "whose <geometry> has no shape left out",
+                 fmt::format("{} '{}'", PlaceOf(collision.Element()), collision.Name()));
     }
-    if (result.floor_friction) {
-      throw base::ConfigError(where + ": is a second floor; keep one plane");
-    }
-    geometry::Collision floor;
-    floor.friction =
-        NumberAt(collision.Element(), {"surface", "friction", "ode", "mu"}, floor.friction);
-    CheckCollision(floor, where);
-    result.floor_friction = floor.friction;
   }
+}
 
-  geometry::Pose3 X_MB_;
-  bool has_one_link_;
-  Context context_;
+bool HasShape(const sdf::Link& link) {
+  for (std::uint64_t i = 0; i < link.CollisionCount(); ++i) {
+    if (!IsEmpty(*link.CollisionByIndex(i))) return true;
+  }
+  return false;
+}
+
+template <typename Condition>
+bool AnyCollision(const ModelLinks& model, Condition condition) {
+  for (const PlacedLink& link : model.links) {
+    for (std::uint64_t i = 0; i < link.link->CollisionCount(); ++i) {
+      if (condition(*link.link->CollisionByIndex(i))) return true;
+    }
+  }
+  return false;
+}
+
+bool AnyLinkHas(const ModelLinks& model, const char* element) {
+  return std::any_of(model.links.begin(), model.links.end(), [&](const PlacedLink& link) {
+    return link.link->Element()->HasElement(element);
+  });
+}
+
+/// Why physics cannot play a model as one body that can move.
+struct Obstacle {
+  std::string kind;  ///< of model, reads after "model"; "" if it can be played
+  const char* made;  ///< what is made of it
 };
 
-/// @throws base::ConfigError if a number that would have a silent default is missing.
-void RequireInertial(const sdf::Link& link, const std::string& where) {
-  const sdf::ElementPtr element = link.Element();
-  const auto require = [&](const sdf::ElementPtr& parent, const char* name) {
-    if (parent->HasElement(name)) {
-      const sdf::ElementPtr child = parent->GetElement(name);
-      if (child->GetExplicitlySetInFile()) return child;  // else libsdformat filled it in
-    }
-    throw base::ConfigError(
-        fmt::format("{}: link '{}' has no <{}>; an object that can move needs mass and inertia, or "
-                    "make the model <static>",
-                    where, link.Name(), name));
-  };
-  const sdf::ElementPtr inertial = require(element, "inertial");
-  require(inertial, "mass");
-  const sdf::ElementPtr inertia = require(inertial, "inertia");
-  for (const char* moment : {"ixx", "iyy", "izz"}) require(inertia, moment);
-}
-
-geometry::MassProperties MassPropertiesOf(const sdf::Link& link, const geometry::Pose3& X_BL,
-                                          const std::string& where) {
-  RequireInertial(link, where);
-  const ignition::math::Inertiald& inertial = link.Inertial();
-  const geometry::Pose3 X_BI = X_BL * ToPose(inertial.Pose());
-  const auto diagonal = inertial.MassMatrix().DiagonalMoments();
-  const auto products = inertial.MassMatrix().OffDiagonalMoments();
-  Eigen::Matrix3d I_I;
-  I_I << diagonal.X(), products.X(), products.Y(),  //
-      products.X(), diagonal.Y(), products.Z(),     //
-      products.Y(), products.Z(), diagonal.Z();
-  const Eigen::Matrix3d R_BI = X_BI.rotation.toRotationMatrix();
-  const geometry::MassProperties result{inertial.MassMatrix().Mass(), X_BI.translation,
-                                        R_BI * I_I * R_BI.transpose()};
-  const std::string wrong = geometry::WhyUnphysical(result);
-  if (!wrong.empty()) {
-    throw base::ConfigError(
-        fmt::format("{}: link '{}': {}; correct its <inertial>", where, link.Name(), wrong));
+Obstacle WhyStill(const ModelLinks& model, Hold hold) {
+  constexpr char kStill[] = "stands still, as an obstacle";
+  if (model.has_moving_joint || hold == Hold::kJoint)
+    return {"with joints", "stands still where it is at joint zero, as an obstacle"};
+  std::set<int> groups;
+  for (const PlacedLink& link : model.links) {
+    if (HasShape(*link.link)) groups.insert(link.group);
   }
-  CheckPose(X_BI, where + ": centre of mass");
-  return result;
+  if (groups.size() > 1) return {"of parts that no fixed joint holds together", kStill};
+  if (AnyLinkHas(model, kFloats)) return {"that is <kinematic> or without gravity", kStill};
+  if (AnyCollision(model, IsPlane)) return {"with a plane that is not <static>", kStill};
+  const auto is_faceted = [](const sdf::Collision& collision) {
+    return OtherShapeOf(collision) == "ellipsoid";
+  };
+  if (AnyCollision(model, is_faceted))
+    return {"with an <ellipsoid>, which physics plays still only", kStill};
+  for (const PlacedLink& link : model.links) {
+    if (!HasShape(*link.link) || HasWholeInertial(*link.link)) continue;
+    if (HasAutomaticInertia(*link.link)) {
+      return {
+          "whose inertia is to be worked out from its shape (<inertial auto='true'>), which is "
+          "not done",
+          kStill};
+    }
+    return {"without mass or inertia (<inertial>)", kStill};
+  }
+  return {"", ""};
 }
 
-void CheckIsSingleLink(const sdf::Model& model) {
-  if (model.LinkCount() == 1 && model.ModelCount() == 0 && model.JointCount() == 0) return;
-  throw base::ConfigError(fmt::format(
-      "{}: can move and has {} links, {} joints, {} nested models; an object is one link without "
-      "joints: merge its links, or make the model <static>",
-      Where(model), model.LinkCount(), model.JointCount(), model.ModelCount()));
+/// Of all links that hold together with those that have shapes, as one body in the model's frame.
+/// @pre WhyStill has nothing to say, and there are shapes.
+geometry::MassProperties MassOf(const ModelLinks& model) {
+  const auto shaped = std::find_if(model.links.begin(), model.links.end(),
+                                   [](const PlacedLink& link) { return HasShape(*link.link); });
+  std::vector<geometry::MassProperties> parts;
+  for (const PlacedLink& link : model.links) {
+    if (link.group == shaped->group && HasWholeInertial(*link.link))
+      parts.push_back(MassPropertiesOf(*link.link, link.X_ML));
+  }
+  return parts.size() == 1 ? parts.front() : Together(parts);
 }
 
 }  // namespace
 
 std::shared_ptr<const geometry::TriangleMesh> MeshCache::Read(const std::string& path,
                                                               const Eigen::Vector3d& scale,
-                                                              const std::string& where) {
-  const std::string key = fmt::format("{} {} {} {}", scale.x(), scale.y(), scale.z(), path);
+                                                              const std::string& where,
+                                                              const geometry::Submesh& submesh) {
+  const std::string key = fmt::format("{} {} {} {} {}\n{}", scale.x(), scale.y(), scale.z(),
+                                      submesh.is_centred, submesh.name, path);
   auto& mesh = meshes_[key];
   if (mesh == nullptr) {
     try {
-      mesh = std::make_shared<const geometry::TriangleMesh>(geometry::ReadMesh(path, scale));
+      mesh =
+          std::make_shared<const geometry::TriangleMesh>(geometry::ReadMesh(path, scale, submesh));
     } catch (const base::ConfigError& error) {
       throw base::ConfigError(fmt::format("{}: {}", where, error.what()));
     }
@@ -299,38 +331,55 @@ std::string Where(const sdf::Model& model) {
   return fmt::format("{}: model '{}'", PlaceOf(model.Element()), model.Name());
 }
 
-bool IsStatic(const sdf::Model& model) {
-  if (model.Static()) return true;
-  if (model.LinkCount() != 1 || model.ModelCount() != 0 || model.JointCount() != 1) return false;
-  const sdf::Joint& joint = *model.JointByIndex(0);
-  const bool is_to_world = joint.ParentLinkName() == "world" || joint.ChildLinkName() == "world";
-  return joint.Type() == sdf::JointType::FIXED && is_to_world;
-}
-
-StaticShapes StaticShapesOf(const sdf::Model& model, const geometry::Pose3& X_MB,
-                            const ResourceFinder& finder, MeshCache* meshes) {
-  StaticCollector collector(X_MB, CountLinks(model) == 1, Context{finder, meshes});
-  collector.Visit(model, {}, "");
-  return collector.result;
-}
-
-ObjectModel LooseObjectOf(const sdf::Model& model, const ResourceFinder& finder,
-                          MeshCache* meshes) {
-  CheckIsSingleLink(model);
-  const std::string where = Where(model);
-  const sdf::Link& link = *model.LinkByIndex(0);
-  const geometry::Pose3 X_BL = PoseIn(link.SemanticPose(), "__model__", where);
-  ObjectModel object{model.Name(), MassPropertiesOf(link, X_BL, where), {}};
-  for (std::uint64_t i = 0; i < link.CollisionCount(); ++i) {
-    object.collisions.push_back(
-        CollisionOf(*link.CollisionByIndex(i), X_BL, "", Context{finder, meshes}));
+PlayedModel PlayedModelOf(const sdf::Model& model, const geometry::Pose3& X_MB, Hold hold,
+                          const ModelReading& reading) {
+  PlayedModel played;
+  const ModelLinks links = LinksOf(model);
+  const bool is_still =
+      hold == Hold::kFixed || std::all_of(links.links.begin(), links.links.end(),
+                                          [](const PlacedLink& link) { return link.group == 0; });
+  const auto note = [&](const std::string& rest) {
+    reading.notes->Add("model", rest, NotePlace(model));
+  };
+  NoteMissingShapes(links, reading.notes);
+  const auto has_shape = [](const PlacedLink& link) { return HasShape(*link.link); };
+  if (std::none_of(links.links.begin(), links.links.end(), has_shape)) {
+    if (!is_still || AnyLinkHas(links, kVisual))
+      note("without any <collision> left out: stops no drive, and nothing stands on it");
+    return played;
   }
-  if (object.collisions.empty()) {
+  played.shapes = ShapesOf(links, X_MB, reading);
+  if (is_still) return played;
+  const Obstacle obstacle = WhyStill(links, hold);
+  if (!obstacle.kind.empty()) {
+    note(obstacle.kind + ": " + obstacle.made);
+    return played;
+  }
+  try {
+    played.object = ObjectModel{model.Name(), MassOf(links), played.shapes.collisions};
+  } catch (const base::ConfigError& error) {
+    reading.notes->AddProblem(error.what());
+  }
+  return played;
+}
+
+ObjectModel LooseObjectOf(const sdf::Model& model, const ModelReading& reading) {
+  const std::string where = Where(model);
+  const ModelLinks links = LinksOf(model);
+  const auto has_shape = [](const PlacedLink& link) { return HasShape(*link.link); };
+  if (std::none_of(links.links.begin(), links.links.end(), has_shape)) {
     throw base::ConfigError(
         where + ": can move but has no <collision>, so it would fall through the floor; add one");
   }
-  std::sort(object.collisions.begin(), object.collisions.end(),
-            [](const auto& a, const auto& b) { return a.name < b.name; });
+  const Obstacle obstacle = WhyStill(links, Hold::kNone);
+  if (!obstacle.kind.empty()) {
+    throw base::ConfigError(
+        fmt::format("{}: is no object, as it is a model {}; an object is one body with mass, "
+                    "inertia and shapes",
+                    where, obstacle.kind));
+  }
+  ObjectModel object{model.Name(), MassOf(links), ShapesOf(links, {}, reading).collisions};
+  reading.notes->ThrowIfProblems(where);
   return object;
 }
 

@@ -8,21 +8,25 @@
 #include <string>
 #include <vector>
 
+#include "hires/geometry/mesh_reader.h"
 #include "hires/world/world.h"
+#include "world/floor_level.h"
 #include "world/resource_finder.h"
+#include "world/sdf/load_notes.h"
 
 namespace hires::world {
 
 /// Farthest that anything may lie from the origin of its frame [m].
 constexpr double kMaxDistance = 1000.0;
 
-/// Each mesh file is read once per scale and shared by all that name it.
+/// Each mesh file, or part of it, is read once per scale and shared by all that name it.
 class MeshCache {
  public:
   /// @param where  Opens the error message.  @throws base::ConfigError as geometry::ReadMesh.
   std::shared_ptr<const geometry::TriangleMesh> Read(const std::string& path,
                                                      const Eigen::Vector3d& scale,
-                                                     const std::string& where);
+                                                     const std::string& where,
+                                                     const geometry::Submesh& submesh = {});
 
   /// Those that are hardly in metres, a sentence each with file, size and remedy.
   std::vector<std::string> Doubts() const;
@@ -46,20 +50,45 @@ geometry::Pose3 PoseIn(const sdf::SemanticPose& pose, const std::string& in,
 /// "file:line: model 'x'" for messages.
 std::string Where(const sdf::Model& model);
 
-/// A model that cannot move: <static>, or its only link is fixed to the world by its only joint.
-bool IsStatic(const sdf::Model& model);
-
 /// Shapes of a model that cannot move, in the model's frame; a link's name precedes its collisions'
 /// names where there are several links.
 struct StaticShapes {
   std::vector<geometry::Collision> collisions;
   std::map<std::string, std::string> places;  ///< "file:line" of each, by its name
-  std::optional<double> floor_friction;  ///< of a plane z = 0 in the world, if the model has one
+  std::vector<FloorPlane> floors;
 };
-StaticShapes StaticShapesOf(const sdf::Model& model, const geometry::Pose3& X_MB,
-                            const ResourceFinder& finder, MeshCache* meshes);
 
-/// A model that can move, named like the model. Its origin is that of the model.
-ObjectModel LooseObjectOf(const sdf::Model& model, const ResourceFinder& finder, MeshCache* meshes);
+/// What a model of a world is played as: an object if it can move, else its shapes, of which there
+/// may be none.
+struct PlayedModel {
+  StaticShapes shapes;
+  std::optional<ObjectModel> object;  ///< named like the model; its origin is that of the model
+};
+
+/// How others hold a model.
+enum class Hold {
+  kNone,
+  kFixed,  ///< to the world, or to what is
+  kJoint,  ///< to another model, by a joint
+};
+
+/// What is needed to read models, and takes what there is to say of them.
+struct ModelReading {
+  const ResourceFinder& finder;
+  MeshCache* meshes;
+  LoadNotes* notes;
+};
+
+/// A model is still if it is <static>, or all its links are fixed to the world. Else links and
+/// models in it that are held together by fixed joints are one object, of their masses and inertias
+/// taken together. What cannot be played so (joints that move, parts that nothing holds together,
+/// no mass) stands still where it is at joint zero, and what has no shape is left out; both is
+/// said. Inertials of what stands still are not looked at. What is wrong becomes problems of the
+/// notes.
+PlayedModel PlayedModelOf(const sdf::Model& model, const geometry::Pose3& X_MB, Hold hold,
+                          const ModelReading& reading);
+
+/// A model that can move. @throws base::ConfigError if it cannot be played as one object.
+ObjectModel LooseObjectOf(const sdf::Model& model, const ModelReading& reading);
 
 }  // namespace hires::world

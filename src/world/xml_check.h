@@ -1,10 +1,11 @@
 #pragma once
 
-#include <map>
-#include <set>
+#include <cstddef>
 #include <string>
 
-#include "world/resource_finder.h"
+namespace tinyxml2 {
+class XMLDocument;
+}
 
 namespace hires::world {
 
@@ -17,22 +18,12 @@ struct XmlLimits {
   int max_elements{200000};
 };
 
-/// What one file holds, by names alone.
-struct XmlFileInventory {
-  std::string root;                ///< name of the outermost element, empty if there is none
-  std::string version;             ///< its attribute, or empty
-  std::set<std::string> elements;  ///< names of all elements
-};
-using XmlInventory = std::map<std::string, XmlFileInventory>;  ///< by path
-
 /// Checks well-formedness, size and depth of the XML in `text` without looking at its meaning.
 /// @throws base::ConfigError naming `path` and line.
 void CheckXml(const std::string& text, const std::string& path, const XmlLimits& limits = {});
 
-/// The same for a file and all files that its <include> elements name.
-/// @throws base::ConfigError as CheckXml; a circle of includes; files, models and meshes of
-/// collisions that are not there, all at once.
-XmlInventory CheckXmlFile(const std::string& path, const ResourceFinder& finder,
-                          const XmlLimits& limits = {});
+/// The same, and keeps what was parsed.
+void ParseXml(const std::string& text, const std::string& path, const XmlLimits& limits,
+              tinyxml2::XMLDocument* document);
 
 }  // namespace hires::world

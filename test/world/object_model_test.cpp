@@ -97,7 +97,7 @@ TEST_F(ObjectModelTest, RefusesMeshesItCannotRead) {
   EXPECT_THAT(error_of(MeshShape("../../outside.obj")), HasSubstr("outside the folder"));
   EXPECT_THAT(error_of(MeshShape("model://none/cube.obj")), HasSubstr("not there"));
   EXPECT_THAT(error_of("<mesh><uri>cube.obj</uri><submesh><name>lid</name></submesh></mesh>"),
-              HasSubstr("<submesh> 'lid'"));
+              HasSubstr("submesh 'lid' is unknown"));
 }
 
 TEST_F(ObjectModelTest, RefusesSdfThatIsNoObject) {

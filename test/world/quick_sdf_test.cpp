@@ -6,12 +6,20 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <sdf/parser.hh>
+#include <sdf/Collision.hh>
+#include <sdf/Frame.hh>
+#include <sdf/Geometry.hh>
+#include <sdf/Link.hh>
+#include <sdf/Model.hh>
+#include <sdf/ParserConfig.hh>
+#include <sdf/World.hh>
 #include <thread>
 
 #include "hires/base/error.h"
 #include "hires/world/object_catalogue.h"
+#include "world/sdf/model_folders.h"
 #include "world/sdf_file.h"
+#include "world/sdf_model.h"
 #include "world/sdf_texts.h"
 #include "world/temp_folder.h"
 
@@ -22,62 +30,82 @@ using testing::HasSubstr;
 
 const std::string kWorlds = HIRES_SOURCE_DIR "/worlds";
 
-std::string PlaceInTree(const sdf::ElementPtr& element) {
-  return fmt::format("{} <{}>", PlaceOf(element), element->GetName());
-}
-
-/// One line for each element: where it stands, its name, attributes and value. A <pose> and a
-/// <static> that come from an <include> stand there in one way and in the model in the other.
-void Describe(const sdf::ElementPtr& element, const std::string& indent,
-              std::vector<std::string>* lines) {
-  const bool has_two_places = element->GetName() == "pose" || element->GetName() == "static";
-  std::string line = indent + (has_two_places ? element->GetName() : PlaceInTree(element));
-  for (const sdf::ParamPtr& attribute : element->GetAttributes()) {
-    line += fmt::format(" {}={}", attribute->GetKey(), attribute->GetAsString());
-  }
-  if (element->GetValue() != nullptr) line += " " + element->GetValue()->GetAsString();
-  if (element->GetIncludeElement() != nullptr) {
-    line += " from " + element->GetIncludeElement()->Get<std::string>("uri");
-  }
-  lines->push_back(line);
-  for (auto child = element->GetFirstElement(); child != nullptr; child = child->GetNextElement()) {
-    Describe(child, indent + " ", lines);
-  }
-}
-
-std::vector<std::string> Described(const sdf::ElementPtr& element) {
-  std::vector<std::string> lines;
-  Describe(element, "", &lines);
-  return lines;
+/// All numbers to their last bit.
+std::string Bits(const geometry::Pose3& pose) {
+  const auto& p = pose.translation;
+  const auto& q = pose.rotation;
+  return fmt::format("{:a} {:a} {:a} {:a} {:a} {:a} {:a}", p.x(), p.y(), p.z(), q.w(), q.x(), q.y(),
+                     q.z());
 }
 
 ResourceFinder FinderFor(const std::string& path) {
   return ResourceFinder(ModelFoldersFor(path, {}));
 }
 
-sdf::SDFPtr ReadQuickly(const std::string& path) {
+/// By libsdformat alone, from the whole file.
+sdf::Root ReadStraight(const std::string& path) {
   const ResourceFinder finder = FinderFor(path);
-  return QuickReader(finder, CheckXmlFile(path, finder)).Read(path);
+  sdf::ParserConfig config;
+  config.SetFindCallback([&](const std::string& uri) { return finder.FindModel(uri, uri, path); });
+  sdf::Root root;
+  const sdf::Errors errors = root.Load(path, config);
+  EXPECT_TRUE(errors.empty()) << (errors.empty() ? "" : errors[0].Message());
+  return root;
+}
+
+sdf::Root ReadQuickly(const std::string& path) {
+  LoadNotes notes;
+  auto root = ReadSdf(path, FinderFor(path), &notes);
+  notes.ThrowIfProblems(path);
+  return std::move(root.value());
+}
+
+/// What a model comes to: its pose, and where its shapes are.
+void Describe(const sdf::Model& model, const std::string& indent, std::vector<std::string>* lines) {
+  lines->push_back(fmt::format("{}{} {} {} {}", indent, PlaceOf(model.Element()), model.Name(),
+                               model.Static(), Bits(PoseIn(model.SemanticPose(), "", "model"))));
+  for (std::uint64_t i = 0; i < model.LinkCount(); ++i) {
+    const sdf::Link& link = *model.LinkByIndex(i);
+    lines->push_back(fmt::format("{} {} {} {}", indent, PlaceOf(link.Element()), link.Name(),
+                                 Bits(PoseIn(link.SemanticPose(), "__model__", "link"))));
+    for (std::uint64_t k = 0; k < link.CollisionCount(); ++k) {
+      const sdf::Collision& collision = *link.CollisionByIndex(k);
+      lines->push_back(fmt::format("{}  {} {} {} {}", indent, PlaceOf(collision.Element()),
+                                   collision.Name(), static_cast<int>(collision.Geom()->Type()),
+                                   Bits(PoseIn(collision.SemanticPose(), "", "collision"))));
+    }
+  }
+  for (std::uint64_t i = 0; i < model.ModelCount(); ++i) {
+    Describe(*model.ModelByIndex(i), indent + " ", lines);
+  }
+}
+
+std::vector<std::string> Described(const sdf::Root& root) {
+  std::vector<std::string> lines;
+  if (root.Model() != nullptr) Describe(*root.Model(), "", &lines);
+  for (std::uint64_t w = 0; w < root.WorldCount(); ++w) {
+    const sdf::World& world = *root.WorldByIndex(w);
+    for (std::uint64_t i = 0; i < world.ModelCount(); ++i) {
+      Describe(*world.ModelByIndex(i), "", &lines);
+    }
+    for (std::uint64_t i = 0; i < world.FrameCount(); ++i) {
+      const sdf::Frame& frame = *world.FrameByIndex(i);
+      lines.push_back(frame.Name() + Bits(PoseIn(frame.SemanticPose(), "world", "frame")));
+    }
+  }
+  return lines;
 }
 
 void ExpectBothWaysAgree(const std::string& path) {
-  const sdf::Root quick = ReadSdf(path, FinderFor(path), {}, ReadingWay::kQuick);
-  const sdf::Root straight = ReadSdf(path, FinderFor(path), {}, ReadingWay::kStraight);
-  EXPECT_EQ(Described(quick.Element()), Described(straight.Element())) << path;
+  EXPECT_EQ(Described(ReadQuickly(path)), Described(ReadStraight(path))) << path;
 }
 
-TEST(QuickSdfTest, TheRestaurantIsReadQuicklyAndTheSame) {
-  const std::string path = kWorlds + "/restaurant.world";
-  EXPECT_NE(ReadQuickly(path), nullptr);
-  ExpectBothWaysAgree(path);
-}
+TEST(QuickSdfTest, TheRestaurantIsTheSame) { ExpectBothWaysAgree(kWorlds + "/restaurant.world"); }
 
-TEST(QuickSdfTest, EveryModelIsReadQuicklyAndTheSame) {
+TEST(QuickSdfTest, EveryModelIsTheSame) {
   int num_models = 0;
   for (const auto& entry : std::filesystem::directory_iterator(kWorlds + "/models")) {
-    const std::string path = (entry.path() / "model.sdf").string();
-    EXPECT_NE(ReadQuickly(path), nullptr) << path;
-    ExpectBothWaysAgree(path);
+    ExpectBothWaysAgree((entry.path() / "model.sdf").string());
     ++num_models;
   }
   EXPECT_EQ(num_models, 28);
@@ -106,7 +134,6 @@ TEST_F(QuickSdfFileTest, IncludesCarryNamePoseAndStaticOver) {
       "<include><uri>model://mug</uri><name>fixed</name><static>true</static>"
       "<pose relative_to='area' degrees='true'>0 0 0 0 0 90</pose></include>" +
       LooseCube("own"));
-  EXPECT_NE(ReadQuickly(path), nullptr);
   ExpectBothWaysAgree(path);
   const World world = LoadWorld(path);
   EXPECT_EQ(world.initial.Find("far")->X_MO.translation.z(), 6.123456789);
@@ -115,7 +142,7 @@ TEST_F(QuickSdfFileTest, IncludesCarryNamePoseAndStaticOver) {
   EXPECT_EQ(world.statics.at(0).collisions.size(), 1u);
 }
 
-TEST_F(QuickSdfFileTest, EveryLargePartIsReadTheSameWay) {
+TEST_F(QuickSdfFileTest, WhatIsNotNeededChangesNothing) {
   const std::string path = Write(
       "<gui fullscreen='false'><camera name='c'><pose>1 0 0 0 0 0</pose></camera></gui>"
       "<light name='l' type='point'><diffuse>1 1 1 1</diffuse></light>"
@@ -124,7 +151,6 @@ TEST_F(QuickSdfFileTest, EveryLargePartIsReadTheSameWay) {
       "</sensor><visual name='v'><geometry><box><size>1 1 1</size></box></geometry></visual>"
       "</link><link name='b'/><joint name='j' type='fixed'><parent>a</parent><child>b</child>"
       "</joint></model>");
-  EXPECT_NE(ReadQuickly(path), nullptr);
   ExpectBothWaysAgree(path);
 }
 
@@ -139,38 +165,47 @@ TEST_F(QuickSdfFileTest, IncludesInIncludedModelsAreFollowed) {
   EXPECT_EQ(world.statics[0].collisions.size(), 2u);
 }
 
-TEST_F(QuickSdfFileTest, WhatIsNotPlainIsReadStraight) {
-  const std::string merged = Write(
-      "<model name='m'><include merge='true'><uri>model://mug</uri>"
-      "</include></model>");
-  EXPECT_EQ(ReadQuickly(merged), nullptr);
-  ExpectBothWaysAgree(merged);
-  const std::string placed = Write(
-      "<include><uri>model://mug</uri><pose>1 0 0 0 0 0</pose>"
-      "<placement_frame>body</placement_frame></include>");
-  EXPECT_EQ(ReadQuickly(placed), nullptr);
-  ExpectBothWaysAgree(placed);
-  const std::string old = folder_.Write(
-      "old.world", "<sdf version='1.5'><world name='w'>" + LooseCube("a") + "</world></sdf>");
-  EXPECT_EQ(ReadQuickly(old), nullptr);
-  ExpectBothWaysAgree(old);
+TEST_F(QuickSdfFileTest, UnusualIncludesAndOldFilesAreTheSame) {
+  ExpectBothWaysAgree(
+      Write("<include><uri>model://mug</uri><pose>1 0 0 0 0 0</pose>"
+            "<placement_frame>body</placement_frame></include>"));
+  ExpectBothWaysAgree(folder_.Write(
+      "old.world", "<sdf version='1.5'><world name='w'>" + LooseCube("a") + "</world></sdf>"));
 }
 
-TEST_F(QuickSdfFileTest, MessagesAreThoseOfTheStraightWay) {
+TEST_F(QuickSdfFileTest, MergedModelsStandWhereLibsdformatPutsThem) {
+  WriteModel("pair", "<model name='pair'><link name='a'><pose>1 2 0 0 0 1</pose>" +
+                         std::string("<collision name='c'><geometry>") + kUnitBox +
+                         "</geometry></collision></link></model>");
+  const std::string path = Write(
+      "<model name='m'><static>true</static><include merge='true'><uri>model://pair</uri>"
+      "<pose>0 0 3 0 0 0.5</pose></include><link name='b'><pose relative_to='a'>0 1 0 0 0 0</pose>"
+      "<collision name='c'><geometry>" +
+      std::string(kUnitBox) + "</geometry></collision></link></model>");
+  const sdf::Root straight = ReadStraight(path);
+  const sdf::Model& model = *straight.WorldByIndex(0)->ModelByIndex(0);
+  const World world = LoadWorld(path);
+  ASSERT_EQ(world.statics.size(), 1u);
+  for (const std::string link : {"a", "b"}) {
+    const auto wanted = PoseIn(model.LinkByName(link)->SemanticPose(), "__model__", link);
+    const auto& shapes = world.statics[0].collisions;
+    EXPECT_TRUE(std::any_of(shapes.begin(), shapes.end(), [&](const auto& shape) {
+      return (shape.X_BS.translation - wanted.translation).norm() < 1e-9;
+    })) << link;
+  }
+}
+
+TEST_F(QuickSdfFileTest, WhatLibsdformatRefusesIsSaidWithItsFile) {
   for (const std::string& content :
        {std::string("<include><uri>model://mug</uri><pose>a b c</pose></include>"),
         std::string("<include><uri>model://mug</uri></include>"
                     "<include><uri>model://mug</uri></include>"),
         std::string("<frame name='f' attached_to='nowhere'/>"),
         std::string("<model name='m'><link name='a'/><joint name='j' type='fixed'>"
-                    "<parent>a</parent><child>nothing</child></joint></model>"),
-        std::string("<model name='m'><link name='a'><sensor name='s'/></link></model>")}) {
+                    "<parent>a</parent><child>nothing</child></joint></model>")}) {
     const std::string path = Write(content);
-    const auto message = [&](ReadingWay way) {
-      return MessageOf<base::ConfigError>([&] { ReadSdf(path, FinderFor(path), {}, way); });
-    };
-    EXPECT_EQ(message(ReadingWay::kQuick), message(ReadingWay::kStraight)) << content;
-    EXPECT_THAT(message(ReadingWay::kQuick), HasSubstr("test.world")) << content;
+    EXPECT_THAT(MessageOf<base::ConfigError>([&] { LoadWorld(path); }), HasSubstr("test.world"))
+        << content;
   }
 }
 

@@ -14,6 +14,7 @@
 #include "hires/base/progress.h"
 #include "hires/base/text.h"
 #include "world/load_world_in_parts.h"
+#include "world/resource_finder.h"
 #include "world/sdf_file.h"
 #include "world/sdf_texts.h"
 #include "world/temp_folder.h"
@@ -119,7 +120,9 @@ TEST_F(WorldPartsFileTest, EachPartIsGoneBeforeTheNextIsRead) {
   const std::string path = WriteBoxes(1000);
   std::weak_ptr<sdf::Element> before;
   std::size_t num_models = 0;
-  ReadSdfWorld(path, ResourceFinder({}), 64, [&](const SdfWorldPart& part) {
+  LoadNotes notes;
+  const SdfFiles files = ReadWorldFiles(path, ResourceFinder({}), &notes);
+  ReadSdfWorld(files, path, 64, &notes, [&](const SdfWorldPart& part) {
     EXPECT_LE(part.world.ModelCount(), 64u);
     EXPECT_TRUE(before.expired()) << "after " << num_models << " models";
     if (part.world.ModelCount() > 0) before = part.world.ModelByIndex(0)->Element();
@@ -158,16 +161,17 @@ TEST_F(WorldPartsFileTest, MessagesNameTheLineOfTheFile) {
               AllOf(HasSubstr("here"), HasSubstr("test.world:9")));
 }
 
-TEST_F(WorldPartsFileTest, WhereAPartIsInDoubtTheWholeIsReadAgainAndTheSame) {
+TEST_F(WorldPartsFileTest, UnusualIncludesAndLightsAreTheSameInParts) {
   WriteMug();
-  const std::string path = Write(
-      StaticModel("one", LinkWithShape(kUnitBox)) + StaticModel("two", LinkWithShape(kUnitBox)) +
-      StaticModel("odd", "<include merge='true'><uri>model://mug</uri></include>"));
-  const ResourceFinder finder(ModelFoldersFor(path, {}));
-  std::vector<bool> firsts;
-  ReadSdfWorld(path, finder, 1, [&](const auto& part) { firsts.push_back(part.is_first); });
-  EXPECT_THAT(firsts, testing::ElementsAre(true, false, false, true));
-  ExpectTheSameInParts(path);
+  folder_.Write("models/lamp/model.config", ModelConfig("lamp"));
+  folder_.Write("models/lamp/model.sdf", ModelFile("<light name='l' type='point'/>"));
+  ExpectTheSameInParts(Write(
+      "<include><uri>model://lamp</uri></include>" + StaticModel("one", LinkWithShape(kUnitBox)) +
+      StaticModel("two", LinkWithShape(kUnitBox)) +
+      StaticModel("odd", "<include merge='true'><uri>model://mug</uri></include>") +
+      "<include><uri>model://lamp</uri><name>again</name></include>"
+      "<include><uri>model://mug</uri><pose>1 0 0 0 0 0</pose>"
+      "<placement_frame>body</placement_frame></include>"));
 }
 
 TEST(WorldPartsTest, NothingIsCutThatIsSmallOrNoSingleWorld) {

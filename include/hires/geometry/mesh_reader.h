@@ -7,6 +7,12 @@
 
 namespace hires::geometry {
 
+/// A part of a mesh file, by the name of its node, object or geometry; "" is the whole file.
+struct Submesh {
+  std::string name;
+  bool is_centred{false};  ///< move it so that the middle of its bounds is its origin
+};
+
 /// Reads the triangles of a mesh file (.stl, .dae or .obj; case of the ending ignored) with Assimp.
 /// A Collada file's length unit is honoured, its up-axis is not: z is up, as everywhere in ROS.
 /// Polygons are split into triangles, equal corners are joined, triangles without an area dropped.
@@ -14,10 +20,13 @@ namespace hires::geometry {
 /// @param path   Where the file lies.
 /// @param scale  Factor per axis; a negative one mirrors, and triangles then turn so that they stay
 ///               counter-clockwise seen from outside.
-/// @throws base::ConfigError naming the path: missing, another format, malformed, no triangles,
+/// @param submesh  What of it is read; its bounds are those before scaling.
+/// @throws base::ConfigError naming the path: missing, another format, malformed, no triangles, no
+/// such submesh (with the names that there are),
 /// more than 64 MB or 2 million triangles, a coordinate that is not finite or beyond 10 km, a scale
 /// that is zero or not finite.
 TriangleMesh ReadMesh(const std::string& path,
-                      const Eigen::Vector3d& scale = Eigen::Vector3d::Ones());
+                      const Eigen::Vector3d& scale = Eigen::Vector3d::Ones(),
+                      const Submesh& submesh = {});
 
 }  // namespace hires::geometry

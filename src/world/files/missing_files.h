@@ -22,10 +22,4 @@ class MissingFiles {
   std::map<std::string, std::vector<std::string>> places_;  // of each text
 };
 
-/// Why model://name/... was found in none of the folders: the model is there and the file is not,
-/// with the one that comes nearest, or there is no such model, with models that come near. Opens
-/// with `where`.
-std::string WhyNoModel(const std::string& uri, const std::vector<std::string>& folders,
-                       const std::string& where);
-
 }  // namespace hires::world

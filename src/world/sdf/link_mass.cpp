@@ -1,0 +1,134 @@
+#include "world/sdf/link_mass.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <locale>
+#include <sdf/Element.hh>
+#include <sstream>
+
+#include "hires/base/check.h"
+#include "hires/base/error.h"
+#include "hires/geometry/angles.h"
+#include "world/sdf/prune_sdf.h"
+#include "world/sdf_file.h"
+#include "world/sdf_model.h"
+
+namespace hires::world {
+namespace {
+
+/// Null if there is none.
+sdf::ElementPtr ChildOf(const sdf::ElementPtr& parent, const char* name) {
+  return parent != nullptr && parent->HasElement(name) ? parent->GetElement(name) : nullptr;
+}
+
+std::string ValueText(const sdf::ElementPtr& element) {
+  return element == nullptr ? "" : element->Get<std::string>();
+}
+
+std::string WhereOf(const sdf::Link& link) {
+  return fmt::format("{}: link '{}'", PlaceOf(link.Element()), link.Name());
+}
+
+std::vector<double> NumbersIn(const std::string& text, const char* name, const std::string& where) {
+  std::vector<double> numbers;
+  std::istringstream in(text);
+  in.imbue(std::locale::classic());
+  for (double value = 0.0; in >> value;) numbers.push_back(value);
+  if (in.eof()) return numbers;
+  throw base::ConfigError(fmt::format(
+      "{}: <{}> of its <inertial> is '{}', wanted numbers; correct it", where, name, text));
+}
+
+double NumberIn(const sdf::ElementPtr& parent, const char* name, const std::string& where) {
+  const sdf::ElementPtr element = ChildOf(parent, name);
+  if (element == nullptr) return 0.0;
+  const std::vector<double> numbers = NumbersIn(ValueText(element), name, where);
+  return numbers.size() == 1 ? numbers[0] : std::nan("");
+}
+
+bool Says(const sdf::ElementPtr& element, const char* attribute, const char* value) {
+  return element->HasAttribute(attribute) &&
+         element->GetAttribute(attribute)->GetAsString() == value;
+}
+
+/// "x y z roll pitch yaw", or as its attributes say.
+geometry::Pose3 PoseOf(const sdf::ElementPtr& element, const std::string& where) {
+  const std::vector<double> n = NumbersIn(ValueText(element), "pose", where);
+  if (n.empty()) return {};
+  const bool is_quaternion = Says(element, "rotation_format", "quat_xyzw");
+  if (n.size() != (is_quaternion ? 7u : 6u)) {
+    throw base::ConfigError(fmt::format("{}: <pose> of its <inertial> is '{}', wanted {} numbers",
+                                        where, ValueText(element), is_quaternion ? 7 : 6));
+  }
+  geometry::Pose3 pose;
+  pose.translation = {n[0], n[1], n[2]};
+  if (is_quaternion) {
+    pose.rotation = Eigen::Quaterniond(n[6], n[3], n[4], n[5]).normalized();
+    return pose;
+  }
+  const double unit = Says(element, "degrees", "true") ? geometry::kPi / 180.0 : 1.0;
+  pose.rotation = Eigen::AngleAxisd(unit * n[5], Eigen::Vector3d::UnitZ()) *
+                  Eigen::AngleAxisd(unit * n[4], Eigen::Vector3d::UnitY()) *
+                  Eigen::AngleAxisd(unit * n[3], Eigen::Vector3d::UnitX());
+  return pose;
+}
+
+sdf::ElementPtr InertialOf(const sdf::Link& link) { return ChildOf(link.Element(), kInertial); }
+
+}  // namespace
+
+bool HasWholeInertial(const sdf::Link& link) {
+  const sdf::ElementPtr inertial = InertialOf(link), inertia = ChildOf(inertial, "inertia");
+  if (ChildOf(inertial, "mass") == nullptr) return false;
+  for (const char* moment : {"ixx", "iyy", "izz"}) {
+    if (ChildOf(inertia, moment) == nullptr) return false;
+  }
+  return true;
+}
+
+bool HasAutomaticInertia(const sdf::Link& link) {
+  const sdf::ElementPtr inertial = InertialOf(link);
+  return inertial != nullptr && (Says(inertial, "auto", "true") || Says(inertial, "auto", "1"));
+}
+
+geometry::MassProperties MassPropertiesOf(const sdf::Link& link, const geometry::Pose3& X_BL) {
+  const std::string where = WhereOf(link);
+  const sdf::ElementPtr inertial = InertialOf(link), inertia = ChildOf(inertial, "inertia");
+  const sdf::ElementPtr pose = ChildOf(inertial, "pose");
+  const geometry::Pose3 X_BI = X_BL * (pose == nullptr ? geometry::Pose3{} : PoseOf(pose, where));
+  const char* names[3][3] = {{"ixx", "ixy", "ixz"}, {"ixy", "iyy", "iyz"}, {"ixz", "iyz", "izz"}};
+  Eigen::Matrix3d I_I;
+  for (int i = 0; i < 3; ++i) {
+    for (int k = 0; k < 3; ++k) I_I(i, k) = NumberIn(inertia, names[i][k], where);
+  }
+  const Eigen::Matrix3d R_BI = X_BI.rotation.toRotationMatrix();
+  const geometry::MassProperties result{NumberIn(inertial, "mass", where), X_BI.translation,
+                                        R_BI * I_I * R_BI.transpose()};
+  const std::string wrong = geometry::WhyUnphysical(result);
+  if (!wrong.empty())
+    throw base::ConfigError(fmt::format("{}: {}; correct its <inertial>", where, wrong));
+  CheckPose(X_BI, where + ": centre of mass");
+  return result;
+}
+
+geometry::MassProperties Together(const std::vector<geometry::MassProperties>& parts) {
+  HIRES_CHECK(!parts.empty(), "nothing has no mass properties");
+  geometry::MassProperties all;
+  all.mass = 0.0;
+  all.p_BBcm.setZero();
+  all.I_BBcm.setZero();
+  for (const geometry::MassProperties& part : parts) {
+    all.mass += part.mass;
+    all.p_BBcm += part.mass * part.p_BBcm;
+  }
+  all.p_BBcm /= all.mass;
+  for (const geometry::MassProperties& part : parts) {
+    const Eigen::Vector3d off = part.p_BBcm - all.p_BBcm;
+    all.I_BBcm += part.I_BBcm + part.mass * (off.squaredNorm() * Eigen::Matrix3d::Identity() -
+                                             off * off.transpose());
+  }
+  return all;
+}
+
+}  // namespace hires::world

@@ -1,0 +1,37 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace hires::world {
+
+/// What there is to say of a file that is loaded: each kind of thing that is played otherwise than
+/// it is written, or left out, once, with count and first place; and all that keeps it from being
+/// loaded, each once.
+class LoadNotes {
+ public:
+  /// Reads as "3 models with joints that move: ...; first hall.world:5 'door'".
+  /// @param noun  of one: "model"
+  /// @param rest  what is so about it and what is made of it: the kind, with `noun`
+  /// @param place  "hall.world:5 'door'"
+  void Add(const std::string& noun, const std::string& rest, const std::string& place,
+           int count = 1);
+  /// A whole message: place, what came, what was wanted, what to do.
+  void AddProblem(const std::string& text);
+
+  bool HasProblems() const { return !problems_.empty(); }
+  std::vector<std::string> Sentences() const;  ///< in the order of their first places
+  /// @throws base::ConfigError with all problems, and after them what else there is to say, if
+  /// there are any.
+  void ThrowIfProblems(const std::string& path) const;
+
+ private:
+  struct Kind {
+    std::string noun, rest, first;
+    int count;
+  };
+  std::vector<Kind> kinds_;
+  std::vector<std::string> problems_;
+};
+
+}  // namespace hires::world

@@ -1,0 +1,313 @@
+#include "world/sdf/prune_sdf.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <map>
+#include <sdf/SDFImpl.hh>
+#include <set>
+
+#include "hires/base/spelling.h"
+#include "hires/base/text.h"
+
+namespace hires::world {
+namespace {
+
+using tinyxml2::XMLElement;
+
+/// What is done with the children of an element, by their names; others are no SDF.
+struct Rule {
+  std::set<std::string> kept;
+  std::set<std::string> unsaid;  ///< left out without a word
+};
+
+const std::map<std::string, Rule>& Rules() {
+  static const std::map<std::string, Rule> rules{
+      {"sdf", {{"world", "model"}, {"light"}}},
+      {"world",
+       {{"model", "frame", "include", "gravity"},
+        {"light", "physics", "scene", "gui", "plugin", "audio", "wind", "magnetic_field",
+         "atmosphere", "spherical_coordinates", "road", "particle_emitter", "projector", "sensor",
+         "pose", "static"}}},
+      {"model",
+       {{"static", "link", "joint", "model", "include", "frame", "pose"},
+        {"plugin", "gripper", "self_collide", "allow_auto_disable", "enable_wind", "sensor",
+         "light", "visual"}}},
+      {"link",
+       {{"pose", "collision"},
+        {"sensor", "light", "enable_wind", "self_collide", "must_be_base_link", "velocity_decay",
+         "audio_sink", "audio_source", "battery", "projector", "particle_emitter", "plugin",
+         "damping", "origin"}}},
+      {"collision",
+       {{"pose", "geometry", "surface"},
+        {"laser_retro", "max_contacts", "density", "auto_inertia_params", "mass", "plugin",
+         "material"}}},
+      {"mesh", {{"uri", "scale", "submesh"}, {"convex_decomposition", "filename"}}},
+      {"frame", {{"pose"}, {}}},
+      {"include", {{"uri", "name", "pose", "static", "placement_frame"}, {"plugin"}}},
+      {"joint", {{"parent", "child", "pose"}, {}}},
+      {"surface", {{"friction", "bounce"}, {}}},
+      {"friction", {{"ode"}, {}}},
+      {"ode", {{"mu"}, {}}},
+      {"bounce", {{"restitution_coefficient"}, {}}},
+  };
+  return rules;
+}
+
+/// Parents whose other children are values for some engine or other, and no things in the world.
+bool HasOnlyValues(const std::string& parent) {
+  static const std::set<std::string> parents{"joint", "surface", "friction", "ode", "bounce"};
+  return parents.count(parent) > 0;
+}
+
+bool IsTrue(const std::string& text) { return text == "1" || base::ToLower(text) == "true"; }
+
+XMLElement* Insert(const char* name, const std::string& text, XMLElement* parent) {
+  XMLElement* element = parent->GetDocument()->NewElement(name);
+  if (!text.empty()) element->SetText(text.c_str());
+  parent->InsertEndChild(element);
+  return element;
+}
+
+void SetTextOf(const char* child, const std::string& text, XMLElement* parent) {
+  if (XMLElement* element = parent->FirstChildElement(child)) element->SetText(text.c_str());
+}
+
+class Pruner {
+ public:
+  Pruner(const std::string& path, SdfFile* file, LoadNotes* notes)
+      : path_(path), file_(file), notes_(notes) {}
+
+  void Prune(XMLElement* parent) {
+    Prepare(parent);
+    const auto rule = Rules().find(parent->Name());
+    XMLElement* next = nullptr;
+    for (XMLElement* child = parent->FirstChildElement(); child != nullptr; child = next) {
+      next = child->NextSiblingElement();
+      if (rule == Rules().end() || Stays(*child, *parent, rule->second)) {
+        Prune(child);
+      } else {
+        parent->DeleteChild(child);
+      }
+    }
+    FillEmptyModel(parent);
+  }
+
+ private:
+  std::string PlaceOf(const XMLElement& element) const {
+    const char* name = element.Attribute("name");
+    return fmt::format("{}:{}{}", path_, element.GetLineNum(),
+                       name == nullptr ? "" : fmt::format(" '{}'", name));
+  }
+
+  bool Stays(const XMLElement& child, const XMLElement& parent, const Rule& rule) {
+    const std::string name = child.Name();
+    if (name.find(':') != std::string::npos) {
+      if (parent.Name() == std::string("include") && name == "experimental:params")
+        notes_->Add("include", "whose <experimental:params> are left out", PlaceOf(parent));
+      return name.rfind(kShapePrefix, 0) == 0;
+    }
+    if (rule.kept.count(name) > 0) return true;
+    if (rule.unsaid.count(name) == 0 && !HasOnlyValues(parent.Name()))
+      SayLeftOut(child, parent, rule);
+    return false;
+  }
+
+  void SayLeftOut(const XMLElement& child, const XMLElement& parent, const Rule& rule) {
+    const std::string name = child.Name(), within = parent.Name();
+    if (name == "actor") {
+      notes_->Add("actor", "left out: nobody walks, and nobody stands in a robot's way",
+                  PlaceOf(child));
+    } else if (name == "population") {
+      const int count =
+          std::max(1, std::atoi(TrimmedText(child.FirstChildElement("model_count")).c_str()));
+      notes_->Add("model", "of a <population> left out, as where they stand is left to chance",
+                  PlaceOf(child), count);
+    } else if (within == "world" && name == "joint") {
+      AddWorldJoint(child);
+    } else if (within == "world" && name == "state") {
+      SayState(child, parent);
+    } else {
+      std::vector<std::string> known(rule.kept.begin(), rule.kept.end());
+      const std::vector<std::string> likely = base::LikelyNames(name, known);
+      notes_->Add("element",
+                  fmt::format("<{}> in <{}> left out, as SDF knows none there{}", name, within,
+                              likely.empty() ? "" : " (was <" + likely.front() + "> meant?)"),
+                  PlaceOf(child));
+    }
+  }
+
+  void AddWorldJoint(const XMLElement& joint) {
+    const char* type = joint.Attribute("type");
+    file_->world_joints.push_back({TrimmedText(joint.FirstChildElement("parent")),
+                                   TrimmedText(joint.FirstChildElement("child")),
+                                   type != nullptr && type == std::string("fixed"),
+                                   PlaceOf(joint)});
+  }
+
+  /// A world that was saved while it ran may have its models elsewhere.
+  void SayState(const XMLElement& state, const XMLElement& world) {
+    std::map<std::string, std::string> poses;
+    for (const auto* model = world.FirstChildElement("model"); model != nullptr;
+         model = model->NextSiblingElement("model")) {
+      const char* name = model->Attribute("name");
+      if (name != nullptr) poses[name] = TrimmedText(model->FirstChildElement("pose"));
+    }
+    for (const auto* model = state.FirstChildElement("model"); model != nullptr;
+         model = model->NextSiblingElement("model")) {
+      const char* name = model->Attribute("name");
+      const auto written = poses.find(name == nullptr ? "" : name);
+      if (written == poses.end() || model->FirstChildElement("pose") == nullptr) continue;
+      if (AreSamePlace(TrimmedText(model->FirstChildElement("pose")), written->second)) continue;
+      notes_->Add("model",
+                  "that <state> has elsewhere: taken where its own <pose> says, the state is left "
+                  "out",
+                  PlaceOf(*model));
+    }
+    for (const char* change : {"insertions", "deletions"}) {
+      if (const XMLElement* element = state.FirstChildElement(change))
+        notes_->Add("element", fmt::format("<{}> in <state> left out", change), PlaceOf(*element));
+    }
+  }
+
+  static bool AreSamePlace(const std::string& a, const std::string& b) {
+    constexpr double kSame = 5e-3;  // [m], [rad]
+    const char* at = a.c_str();
+    const char* other = b.c_str();
+    for (int i = 0; i < 6; ++i) {
+      char* end = nullptr;
+      const double one = std::strtod(at, &end);
+      at = end;
+      const double two = std::strtod(other, &end);
+      other = end;
+      if (std::abs(one - two) > kSame) return false;
+    }
+    return true;
+  }
+
+  /// What is to be put otherwise before children are judged.
+  void Prepare(XMLElement* element) {
+    const std::string name = element->Name();
+    if (name == "sdf") TakeVersion(element);
+    if (name == "world") TakeOldGravity(element);
+    if (name == "link") PrepareLink(element);
+    if (name == "geometry") PrepareGeometry(element);
+    if (name == "joint") PrepareJoint(element);
+    if (name == "mesh") {
+      element->DeleteAttribute("optimization");
+      SetTextOf("uri", TrimmedText(element->FirstChildElement("uri")), element);
+    }
+    if (name == "include") {
+      for (const char* child : {"uri", "name"})
+        SetTextOf(child, TrimmedText(element->FirstChildElement(child)), element);
+      const char* merge = element->Attribute("merge");
+      if (merge != nullptr && IsTrue(merge)) Insert(kMerged, "", element);
+      element->DeleteAttribute("merge");
+    }
+  }
+
+  void TakeVersion(XMLElement* root) {
+    const char* written = root->Attribute("version");
+    file_->version = written == nullptr ? "" : written;
+    int minor = 0, newest = 0;
+    char more = 0;
+    if (std::sscanf(file_->version.c_str(), "1.%d%c", &minor, &more) != 1) return;
+    if (std::sscanf(sdf::SDF::Version().c_str(), "1.%d", &newest) != 1 || minor <= newest) return;
+    notes_->Add("file", fmt::format("of SDF {} read as {}", file_->version, sdf::SDF::Version()),
+                path_);
+    file_->version = sdf::SDF::Version();
+    root->SetAttribute("version", file_->version.c_str());
+  }
+
+  /// Up to SDF 1.5 gravity stands in <physics>.
+  void TakeOldGravity(XMLElement* world) const {
+    int minor = 0;
+    if (std::sscanf(file_->version.c_str(), "1.%d", &minor) != 1 || minor > 5) return;
+    const XMLElement* physics = world->FirstChildElement("physics");
+    const XMLElement* gravity =
+        physics == nullptr ? nullptr : physics->FirstChildElement("gravity");
+    if (gravity != nullptr && world->FirstChildElement("gravity") == nullptr)
+      Insert("gravity", TrimmedText(gravity), world);
+  }
+
+  static void PrepareLink(XMLElement* link) {
+    bool is_seen = false, floats = false;
+    XMLElement* next = nullptr;
+    for (XMLElement* child = link->FirstChildElement(); child != nullptr; child = next) {
+      next = child->NextSiblingElement();
+      const std::string name = child->Name();
+      is_seen = is_seen || name == "visual";
+      floats = floats || (name == "gravity" && !IsTrue(TrimmedText(child))) ||
+               (name == "kinematic" && IsTrue(TrimmedText(child)));
+      if (name == "inertial") child->SetName(kInertial);
+      if (name == "visual" || name == "gravity" || name == "kinematic") link->DeleteChild(child);
+    }
+    if (is_seen) Insert(kVisual, "", link);
+    if (floats) Insert(kFloats, "", link);
+  }
+
+  /// Shapes that libsdformat does not know in all versions are read by ShapesOf.
+  static void PrepareGeometry(XMLElement* geometry) {
+    static const std::set<std::string> own{"box", "cylinder", "sphere", "plane", "mesh", "empty"};
+    bool is_other = false;
+    for (XMLElement* child = geometry->FirstChildElement(); child != nullptr;
+         child = child->NextSiblingElement()) {
+      const std::string name = child->Name();
+      if (own.count(name) > 0 || name.find(':') != std::string::npos) continue;
+      child->SetName((kShapePrefix + name).c_str());
+      is_other = true;
+    }
+    if (is_other && geometry->FirstChildElement("empty") == nullptr) Insert("empty", "", geometry);
+  }
+
+  /// Where things stand at joint zero does not depend on what a joint lets move.
+  static void PrepareJoint(XMLElement* joint) {
+    const char* type = joint->Attribute("type");
+    Insert(kJointType, type == nullptr ? "" : type, joint);
+    joint->SetAttribute("type", "fixed");
+    XMLElement* parent = joint->FirstChildElement("parent");
+    XMLElement* child = joint->FirstChildElement("child");
+    if (parent != nullptr &&
+        TrimmedText(child) == "world") {  // the same joint, the other way round
+      child->SetText(TrimmedText(parent).c_str());
+      parent->SetText("world");
+    }
+  }
+
+  const std::string& path_;
+  SdfFile* file_;
+  LoadNotes* notes_;
+};
+
+}  // namespace
+
+std::string TrimmedText(const XMLElement* element) {
+  const char* text = element == nullptr ? nullptr : element->GetText();
+  if (text == nullptr) return "";
+  const std::string whole = text;
+  const std::size_t begin = whole.find_first_not_of(" \t\r\n");
+  if (begin == std::string::npos) return "";
+  return whole.substr(begin, whole.find_last_not_of(" \t\r\n") - begin + 1);
+}
+
+void FillEmptyModel(XMLElement* model) {
+  if (model->Name() != std::string("model")) return;
+  for (const char* part : {"link", "model", "include"}) {
+    if (model->FirstChildElement(part) != nullptr) return;
+  }
+  Insert("link", "", model)->SetAttribute("name", "hires_nothing");
+}
+
+void PruneSdf(XMLElement* root, const std::string& path, SdfFile* file, LoadNotes* notes) {
+  Pruner(path, file, notes).Prune(root);
+  for (const auto* top = root->FirstChildElement(); top != nullptr;
+       top = top->NextSiblingElement()) {
+    file->num_worlds += top->Name() == std::string("world") ? 1 : 0;
+    file->num_models += top->Name() == std::string("model") ? 1 : 0;
+  }
+}
+
+}  // namespace hires::world
