@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <optional>
-#include <set>
 #include <utility>
 
 #include "cli/verbs/imagine/imagine_start.h"
@@ -29,17 +28,22 @@ namespace {
 using imagination::ImaginationSetup;
 using Say = std::function<void(const Finding&)>;
 
-/// Each text once.
+/// Each text once, also where an earlier one says it with more around it.
 class Told {
  public:
   explicit Told(Say say) : say_(std::move(say)) {}
   void operator()(const Finding& finding) {
-    if (texts_.insert(finding.text).second) say_(finding);
+    const auto says_it = [&](const std::string& text) {
+      return text.find(finding.text) != std::string::npos;
+    };
+    if (std::any_of(texts_.begin(), texts_.end(), says_it)) return;
+    texts_.push_back(finding.text);
+    say_(finding);
   }
 
  private:
   Say say_;
-  std::set<std::string> texts_;
+  std::vector<std::string> texts_;
 };
 
 /// While it lives, warnings of this process are findings.
