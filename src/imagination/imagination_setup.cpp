@@ -409,10 +409,11 @@ std::string ImaginationSetup::ModelOf(const std::string& instance_or_model) cons
   if (!kin.empty()) return kin;
   if (scene->world.FindModel(instance_or_model)) return instance_or_model;  // it says its box
   if (instance_or_model.find_first_of("./") != std::string::npos) {
-    throw base::ConfigError(fmt::format(
-        "object '{}' is a file: load it with the scene (SetupConfig::extra_objects), and call it by "
-        "its model's name",
-        instance_or_model));
+    throw base::ConfigError(
+        fmt::format("object '{}' is a file: load it with the scene (SetupConfig::extra_objects), "
+                    "and call it by "
+                    "its model's name",
+                    instance_or_model));
   }
   std::vector<std::string> known;
   for (const auto& [name, model] : object_models) known.push_back(name);

@@ -34,8 +34,8 @@ struct RunnerParams {
   StopParams stop;
 };
 
-/// stale_observation, for people: how old the last complete state of the robot is, how old it may be
-/// [s], and what to look at.
+/// stale_observation, for people: how old the last complete state of the robot is, how old it may
+/// be [s], and what to look at.
 /// @param late  the topic that keeps it from being complete; empty: none alone does.
 base::Failure Stale(double age, double limit, const std::string& late);
 

@@ -59,8 +59,7 @@ void AddOptions(CLI::App* app, ImagineOptions* o) {
   app->add_option("--threads", o->threads, "workers of --local; default: one per core")
       ->check(NumberBetween(1, 256));
   CLI::Option* world = app->add_option("--world", o->world, "another SDF world");
-  app->add_option("--map", o->map,
-                  "a map_server map (its YAML) whose walls are the world")
+  app->add_option("--map", o->map, "a map_server map (its YAML) whose walls are the world")
       ->excludes(world);
   AddAreaOption(app, &o->areas);
   app->add_option("--robot", o->robot, "another robot: profile (.yaml) or URDF (.urdf)");
