@@ -226,6 +226,19 @@ TEST_F(ImagineRecordingTest, AGoalWithoutIdIsNamed) {
   EXPECT_THAT(Error(), HasSubstr("a goal of /imagine has no goal id"));
 }
 
+TEST_F(ImagineRecordingTest, OneBadGoalDoesNotSpoilTheOthers) {
+  Write(std::pair{"/imagine/goal", ActionGoal("", Goal("typed"))},
+        std::pair{"/imagine/goal", ActionGoal("g1", Goal("serve"))},
+        std::pair{"/imagine/goal", ActionGoal("g2", Goal("cut off"))},
+        std::pair{"/imagine/result", ActionResult("g1", Ranked())});
+  const ImagineRecording recording = ReadImagineRecording(path_, "");
+  ASSERT_EQ(recording.requests.size(), 1u);
+  EXPECT_EQ(recording.requests[0].goal.request_id, "serve");
+  EXPECT_THAT(recording.left_out,
+              testing::ElementsAre(HasSubstr("a goal of /imagine has no goal id"),
+                                   HasSubstr("goal g2 of /imagine (request 'cut off')")));
+}
+
 TEST_F(ImagineRecordingTest, MessagesOfAnotherVersionAreNamed) {
   const std::string md5sum(32, '7');
   Write(std::pair{"/imagine/goal", Raw("hires/ImagineActionGoal", md5sum, {1, 2, 3})});

@@ -6,10 +6,12 @@
 #include <rosbag/view.h>
 #include <tf2_msgs/TFMessage.h>
 
+#include <algorithm>
 #include <functional>
 #include <memory>
 #include <utility>
 
+#include "hires/base/progress.h"
 #include "hires/ros/perception/detection_messages.h"
 #include "hires/ros/robot/robot_messages.h"
 #include "hires/ros/transforms/transform_buffer.h"
@@ -124,7 +126,13 @@ EpisodeRecording ReadEpisodeRecording(const std::string& path, const reports::Ep
     recording.topics = CheckTopics(config, {topics.begin(), topics.end()});
     Reader reader(config, setup);
     rosbag::View view(bag, rosbag::TopicQuery(reader.Topics()));
-    for (const rosbag::MessageInstance& message : view) reader.Take(message);
+    const double size = std::max(1u, view.size());
+    long count = 0;
+    for (const rosbag::MessageInstance& message : view) {
+      if (++count % 1000 == 0) hires::base::ReportProgress("reading " + path, count / size);
+      reader.Take(message);
+    }
+    hires::base::ReportProgress("reading " + path, 1.0);
     recording.missing = reader.builder().MissingText();
     recording.dropped = reader.builder().dropped();
     recording.episodes = reader.builder().Take();

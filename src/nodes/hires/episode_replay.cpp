@@ -1,14 +1,16 @@
 #include "nodes/hires/episode_replay.h"
 
 #include <fmt/format.h>
-#include <unistd.h>
 
+#include <algorithm>
 #include <iostream>
 #include <nlohmann/json.hpp>
 #include <optional>
 
 #include "cli/exit_code.h"
 #include "hires/base/error.h"
+#include "hires/base/progress.h"
+#include "hires/base/spelling.h"
 #include "hires/imagination/local_setup.h"
 #include "hires/ros/answer/report_messages.h"
 #include "hires/ros/robot/robot_state_messages.h"
@@ -68,6 +70,7 @@ hires::ImagineGoal GoalOf(const EpisodeStep& step, const ImaginationSetup& setup
 }
 
 std::optional<ImaginedAction> AskFor(const EpisodeStep& step, const hires::ImagineGoal& goal,
+                                     const imagination::OnInterim& on_interim,
                                      const std::function<bool()>& cancelled) {
   ImaginedAction imagined;
   if (step.goal) {
@@ -76,7 +79,7 @@ std::optional<ImaginedAction> AskFor(const EpisodeStep& step, const hires::Imagi
         "--local can";
     return imagined;
   }
-  const hires::ImagineResult result = AskImaginationClient(goal, {}, cancelled);
+  const hires::ImagineResult result = AskImaginationClient(goal, on_interim, cancelled);
   if (result.outcome == hires::ImagineResult::CANCELLED) return std::nullopt;
   if (result.predictions.empty()) {
     imagined.refusal = result.why;
@@ -86,24 +89,30 @@ std::optional<ImaginedAction> AskFor(const EpisodeStep& step, const hires::Imagi
   return imagined;
 }
 
+/// @param done  steps, with the share of the one that is imagined.
+void ReportSteps(double done, std::size_t all) {
+  hires::base::ReportProgress(fmt::format("imagining {} again", hires::base::Counted(all, "step")),
+                              done / std::max<double>(1.0, static_cast<double>(all)));
+}
+
 Imagine WayOf(const EpisodeReplay& replay, const ImaginationSetup& setup,
               const std::vector<EpisodeStep>& steps, const std::function<bool()>& cancelled) {
   if (replay.is_local) {
-    const hires::base::Crew crew{replay.threads, cancelled, {}};
-    return [=, with_goals = reports::WithGoals(setup, steps)](const EpisodeStep& step,
-                                                              std::uint64_t place) {
+    return [=, all = steps.size(), with_goals = reports::WithGoals(setup, steps)](
+               const EpisodeStep& step, std::uint64_t place) {
+      const hires::base::Crew crew{replay.threads, cancelled, [&](double share, double) {
+                                     ReportSteps(static_cast<double>(place) + share, all);
+                                   }};
       return reports::ImagineStep(with_goals, step, replay.params, place, crew);
     };
   }
-  return [=](const EpisodeStep& step, std::uint64_t place) {
-    return AskFor(step, GoalOf(step, setup, replay.params, place), cancelled);
+  return [=, all = steps.size()](const EpisodeStep& step, std::uint64_t place) {
+    const auto on_interim = [&](const imagination::Interim& interim) {
+      const double rollouts = std::max(1.0, static_cast<double>(interim.progress.total));
+      ReportSteps(static_cast<double>(place) + interim.progress.done / rollouts, all);
+    };
+    return AskFor(step, GoalOf(step, setup, replay.params, place), on_interim, cancelled);
   };
-}
-
-void ShowPlace(std::size_t place, std::size_t all) {
-  if (isatty(STDERR_FILENO) == 0) return;
-  std::cerr << (place < all ? fmt::format("\rstep {} of {}\033[K", place + 1, all) : "\r\033[K")
-            << std::flush;
 }
 
 /// Nothing when it was cancelled.
@@ -111,13 +120,13 @@ std::optional<std::vector<ComparedStep>> CompareAll(const std::vector<EpisodeSte
                                                     const Imagine& imagine, double surprise) {
   std::vector<ComparedStep> compared;
   for (std::size_t i = 0; i < steps.size(); ++i) {
-    ShowPlace(i, steps.size());
+    ReportSteps(static_cast<double>(i), steps.size());
     std::optional<ImaginedAction> imagined = ImaginedAction();
     if (steps[i].why_not.empty()) imagined = imagine(steps[i], i);
     if (!imagined) return std::nullopt;
     compared.push_back(reports::CompareStep(steps[i], *imagined, surprise));
   }
-  ShowPlace(steps.size(), steps.size());
+  ReportSteps(static_cast<double>(steps.size()), steps.size());
   return compared;
 }
 

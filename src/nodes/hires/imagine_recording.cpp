@@ -92,21 +92,19 @@ bool Contains(const std::vector<BagTopic>& topics, const std::string& name) {
 /// What the topics of one action hold; results by goal id, the first of equals counts.
 struct RecordedAction {
   std::vector<std::pair<std::string, hires::ImagineGoal>> goals;
+  int goals_without_id{0};
   std::map<std::string, hires::ImagineResult> results;
 };
 
-RecordedAction ReadAction(const std::string& path, const rosbag::Bag& bag,
-                          const std::string& action) {
+RecordedAction ReadAction(const rosbag::Bag& bag, const std::string& action) {
   RecordedAction out;
   std::set<std::string> seen;
   rosbag::View view(bag, rosbag::TopicQuery({action + "/goal", action + "/result"}));
   for (const rosbag::MessageInstance& message : view) {
     if (const auto goal = message.instantiate<ImagineActionGoal>()) {
       if (goal->goal_id.id.empty()) {
-        throw ConfigError(fmt::format(
-            "{}: a goal of {} has no goal id, so its result cannot be told from others; send goals "
-            "through an action client, or fill in goal_id.id",
-            path, action));
+        ++out.goals_without_id;
+        continue;
       }
       // An action server ignores a goal that comes once more, so it counts once here too.
       if (seen.insert(goal->goal_id.id).second) out.goals.push_back({goal->goal_id.id, goal->goal});
@@ -120,23 +118,31 @@ RecordedAction ReadAction(const std::string& path, const rosbag::Bag& bag,
   return out;
 }
 
-[[noreturn]] void FailWithoutResult(const std::string& path, const std::string& action,
-                                    const std::string& id, const hires::ImagineGoal& goal,
-                                    bool has_topic) {
-  throw ConfigError(fmt::format(
-      "{}: goal {} of {} (request '{}') has no result, because {}; record {}/goal and {}/result "
-      "until all results have come",
-      path, id, action, goal.request_id,
+std::string WithoutResult(const std::string& action, const std::string& id,
+                          const hires::ImagineGoal& goal, bool has_topic) {
+  return fmt::format(
+      "goal {} of {} (request '{}') has no result, because {}; record {}/goal and {}/result until "
+      "all results have come",
+      id, action, goal.request_id,
       has_topic ? "the recording ended before it" : fmt::format("{}/result is missing", action),
-      action, action));
+      action, action);
 }
 
-void Match(const std::string& path, const std::string& action, bool has_results,
-           RecordedAction* recorded, ImagineRecording* out) {
+void Match(const std::string& action, bool has_results, RecordedAction* recorded,
+           ImagineRecording* out) {
+  if (recorded->goals_without_id > 0) {
+    out->left_out.push_back(fmt::format(
+        "{} of {} no goal id, so that results cannot be told from others; send goals through an "
+        "action client, or fill in goal_id.id",
+        recorded->goals_without_id == 1 ? "a goal"
+                                        : fmt::format("{} goals", recorded->goals_without_id),
+        action + (recorded->goals_without_id == 1 ? " has" : " have")));
+  }
   for (auto& [id, goal] : recorded->goals) {
     const auto result = recorded->results.find(id);
     if (result == recorded->results.end()) {
-      FailWithoutResult(path, action, id, goal, has_results);
+      out->left_out.push_back(WithoutResult(action, id, goal, has_results));
+      continue;
     }
     out->requests.push_back({action, id, std::move(goal), std::move(result->second)});
     recorded->results.erase(result);
@@ -152,8 +158,11 @@ ImagineRecording Read(const std::string& path, const std::string& wanted) {
   for (const std::string& action : ChooseActions(path, topics, wanted)) {
     RequireVersion<ImagineActionGoal>(path, topics, action + "/goal");
     RequireVersion<ImagineActionResult>(path, topics, action + "/result");
-    RecordedAction recorded = ReadAction(path, bag, action);
-    Match(path, action, Contains(topics, action + "/result"), &recorded, &out);
+    RecordedAction recorded = ReadAction(bag, action);
+    Match(action, Contains(topics, action + "/result"), &recorded, &out);
+  }
+  if (out.requests.empty() && !out.left_out.empty()) {
+    throw ConfigError(fmt::format("{}: {}", path, hires::base::Join(out.left_out, "; ")));
   }
   if (out.requests.empty()) {
     throw ConfigError(

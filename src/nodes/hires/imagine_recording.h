@@ -21,6 +21,7 @@ struct RecordedRequest {
 struct ImagineRecording {
   std::vector<RecordedRequest> requests;  ///< in the order of their goals, never empty
   int results_without_goal{0};            ///< of requests that were sent before the recording began
+  std::vector<std::string> left_out;      ///< goals that cannot be replayed: each with its reason
 };
 
 /// Whether goals of an `imagine` action are among them.
@@ -31,8 +32,8 @@ bool HasImagineGoals(const std::vector<BagTopic>& topics);
 /// more than 2 GB of memory is refused.
 /// @param action  "/imagine", or one of its topics ("/imagine/goal"); empty: all in the bag.
 /// @throws hires::base::ConfigError naming the bag and what to do: no such bag, unindexed or broken
-/// bag, no such action in it (with a list of what is there), messages of another version, a goal
-/// without an id or without a result.
+/// bag, no such action in it (with a list of what is there), messages of another version, or no goal
+/// that has an id and a result (others are left out).
 ImagineRecording ReadImagineRecording(const std::string& path, const std::string& action);
 
 }  // namespace hires_ros

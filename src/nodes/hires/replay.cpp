@@ -7,8 +7,7 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <array>
-#include <atomic>
-#include <csignal>
+#include <functional>
 #include <iostream>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -16,8 +15,10 @@
 #include <thread>
 
 #include "cli/exit_code.h"
+#include "cli/program.h"
 #include "cli/whole_number.h"
 #include "hires/base/error.h"
+#include "hires/base/progress.h"
 #include "hires/base/text.h"
 #include "hires/imagination/local_imagination.h"
 #include "hires/imagination/local_setup.h"
@@ -38,10 +39,6 @@ namespace imagination = hires::imagination;
 using hires::ImagineGoal;
 using hires::ImagineResult;
 using nlohmann::ordered_json;
-
-std::atomic<bool> interrupted{false};
-
-void OnInterrupt(int) { interrupted = true; }
 
 /// The bytes that would travel: equal for equal bits, whatever the type.
 template <typename T>
@@ -289,9 +286,13 @@ int ThreadsOf(const ReplayOptions& options) {
   return options.threads > 0 ? options.threads : cores;
 }
 
-/// A bar that is drawn over itself on a terminal; nothing elsewhere.
+/// A bar that is drawn over itself on a terminal; elsewhere a line now and then.
 void ShowProgress(const imagination::Interim& interim) {
-  if (isatty(STDERR_FILENO) == 0) return;
+  if (isatty(STDERR_FILENO) == 0) {
+    return hires::base::ReportProgress(
+        "imagining again", static_cast<double>(interim.progress.done) /
+                               std::max<double>(1.0, static_cast<double>(interim.progress.total)));
+  }
   const bool is_done = interim.progress.done >= interim.progress.total;
   std::cerr << '\r' << (is_done ? "" : reports::ProgressLine(interim.progress)) << "\033[K"
             << std::flush;
@@ -328,7 +329,10 @@ int ReplayRequests(const ReplayOptions& options, const std::string& package_fold
         "the recording began\n\n",
         recording.results_without_goal);
   }
-  const auto cancelled = [] { return interrupted.load(); };
+  for (const std::string& left_out : recording.left_out)
+    std::cout << "left out: " << left_out << "\n\n";
+  std::cout << std::flush;
+  const std::function<bool()> cancelled = cli::IsInterrupted;
   const auto replayed =
       ReplayAll(recording.requests, ChooseImagination(options, package_folder, cancelled),
                 cancelled, std::cout);
@@ -338,11 +342,10 @@ int ReplayRequests(const ReplayOptions& options, const std::string& package_fold
     for (const ReplayedRequest& request : replayed) json.push_back(ReplayJson(request));
     reports::WriteJson(json, options.json);
   }
-  return interrupted ? cli::kExitCancelled : ReplayExitCode(replayed);
+  return cli::IsInterrupted() ? cli::kExitCancelled : ReplayExitCode(replayed);
 }
 
 int Replay(const ReplayOptions& options, const std::string& package_folder) {
-  for (const int signal : {SIGINT, SIGTERM, SIGHUP}) std::signal(signal, OnInterrupt);
   if (!options.json.empty()) reports::RequireFolderOf(options.json);
   EpisodeReplay episode = options.episode;
   episode.bag = options.bag;
@@ -354,7 +357,7 @@ int Replay(const ReplayOptions& options, const std::string& package_folder) {
   const bool wants_requests = options.requests || !options.action.empty();
   const auto config = wants_requests ? std::nullopt : ConfigOfEpisode(episode);
   if (!config) return ReplayRequests(options, package_folder);
-  return ReplayEpisode(episode, *config, package_folder, [] { return interrupted.load(); });
+  return ReplayEpisode(episode, *config, package_folder, cli::IsInterrupted);
 }
 
 }  // namespace
