@@ -55,6 +55,13 @@ std::string NotePlace(const sdf::Model& model) {
   return fmt::format("{} '{}'", PlaceOf(model.Element()), model.Name());
 }
 
+/// The line of its <uri>.
+std::string WhereIsMesh(const sdf::Collision& collision) {
+  const sdf::ElementPtr mesh =
+      collision.Element()->GetElement("geometry")->GetElement("mesh")->GetElement("uri");
+  return fmt::format("{}: collision '{}'", PlaceOf(mesh), collision.Name());
+}
+
 geometry::Shape MeshOf(const sdf::Mesh& mesh, const ModelReading& reading,
                        const std::string& where) {
   const std::string path = reading.finder.FindMesh(mesh.Uri(), mesh.FilePath(), where);
@@ -73,7 +80,7 @@ geometry::Shape ShapeOf(const sdf::Collision& collision, const ModelReading& rea
     case sdf::GeometryType::SPHERE:
       return geometry::Sphere{geom.SphereShape()->Radius()};
     case sdf::GeometryType::MESH:
-      return MeshOf(*geom.MeshShape(), reading, WhereIs(collision));
+      return MeshOf(*geom.MeshShape(), reading, WhereIsMesh(collision));
     default:
       throw base::ConfigError(WhereIs(collision) +
                               ": its shape is not supported; use box, cylinder, sphere, mesh, or a "

@@ -84,11 +84,11 @@ TEST_F(MissingFilesTest, AllThatAWorldLacksIsToldAtOnceWithLineNearestAndRemedy)
           break;
         case 2:
           uri = "model://" + name + "/bodi.obj";
-          wanted.push_back({at, uri, "model '" + name + "' is ", "/body.obj'?"});
+          wanted.push_back({at, uri, "models/" + name + "/bodi.obj", "'body.obj'?"});
           break;
         default:
           uri = "model://" + wrong + "/body.obj";
-          wanted.push_back({at, uri, "no model folder '" + wrong + "'", name});
+          wanted.push_back({at, uri, "looked in ", name});
       }
       models += MeshModel(fmt::format("m{}", i), 3.0 * i, uri);
       line += 2;

@@ -28,8 +28,26 @@ void LoadNotes::Add(const std::string& noun, const std::string& rest, const std:
 }
 
 void LoadNotes::AddProblem(const std::string& text) {
-  if (std::find(problems_.begin(), problems_.end(), text) == problems_.end())
-    problems_.push_back(text);
+  const std::size_t colon = text.find(": ");
+  const std::string place = colon == std::string::npos ? "" : text.substr(0, colon + 2);
+  const std::string rest = text.substr(place.size());
+  const auto same = std::find_if(problems_.begin(), problems_.end(),
+                                 [&](const Problem& one) { return one.text == rest; });
+  if (same == problems_.end()) {
+    problems_.push_back({rest, {place}});
+  } else if (std::find(same->places.begin(), same->places.end(), place) == same->places.end()) {
+    same->places.push_back(place);
+  }
+}
+
+std::vector<std::string> LoadNotes::ProblemLines() const {
+  std::vector<std::string> lines;
+  for (const Problem& problem : problems_) {
+    const std::size_t count = problem.places.size();
+    lines.push_back(problem.places.front() + problem.text +
+                    (count > 1 ? fmt::format(" (named {} times)", count) : ""));
+  }
+  return lines;
 }
 
 std::vector<std::string> LoadNotes::Sentences() const {
@@ -44,12 +62,12 @@ std::vector<std::string> LoadNotes::Sentences() const {
 void LoadNotes::ThrowIfProblems(const std::string& path) const {
   if (problems_.empty()) return;
   const std::vector<std::string> sentences = Sentences();
-  if (problems_.size() == 1 && sentences.empty()) throw base::ConfigError(problems_.front());
-  std::vector<std::string> listed(
-      problems_.begin(),
-      problems_.begin() + static_cast<std::ptrdiff_t>(std::min(problems_.size(), kMostProblems)));
-  if (listed.size() < problems_.size())
-    listed.push_back(fmt::format("and {} more", problems_.size() - listed.size()));
+  std::vector<std::string> listed = ProblemLines();
+  if (listed.size() == 1 && sentences.empty()) throw base::ConfigError(listed.front());
+  if (listed.size() > kMostProblems) {
+    listed.resize(kMostProblems);
+    listed.push_back(fmt::format("and {} more", problems_.size() - kMostProblems));
+  }
   std::string text =
       fmt::format("{}: cannot be loaded; correct:\n  {}", path, base::Join(listed, "\n  "));
   if (!sentences.empty()) {

@@ -16,7 +16,8 @@ class LoadNotes {
   /// @param place  "hall.world:5 'door'"
   void Add(const std::string& noun, const std::string& rest, const std::string& place,
            int count = 1);
-  /// A whole message: place, what came, what was wanted, what to do.
+  /// A whole message: place, what came, what was wanted, what to do. What is wrong alike at other
+  /// places is told once, with their number.
   void AddProblem(const std::string& text);
 
   bool HasProblems() const { return !problems_.empty(); }
@@ -30,8 +31,14 @@ class LoadNotes {
     std::string noun, rest, first;
     int count;
   };
+  struct Problem {
+    std::string text;  ///< what stands behind the place
+    std::vector<std::string> places;
+  };
+  std::vector<std::string> ProblemLines() const;
+
   std::vector<Kind> kinds_;
-  std::vector<std::string> problems_;
+  std::vector<Problem> problems_;
 };
 
 }  // namespace hires::world
