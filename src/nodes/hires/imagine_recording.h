@@ -32,8 +32,8 @@ bool HasImagineGoals(const std::vector<BagTopic>& topics);
 /// more than 2 GB of memory is refused.
 /// @param action  "/imagine", or one of its topics ("/imagine/goal"); empty: all in the bag.
 /// @throws hires::base::ConfigError naming the bag and what to do: no such bag, unindexed or broken
-/// bag, no such action in it (with a list of what is there), messages of another version, or no goal
-/// that has an id and a result (others are left out).
+/// bag, no such action in it (with a list of what is there), messages of another version, or no
+/// goal that has an id and a result (others are left out).
 ImagineRecording ReadImagineRecording(const std::string& path, const std::string& action);
 
 }  // namespace hires_ros
