@@ -53,6 +53,7 @@ std::vector<ProgramVerb> VerbsOf(CLI::App* app, const std::vector<std::string>& 
     return RunBlackboardVerb(options, folder, backends.connect_blackboard);
   });
   AddList(TasksOf, &table);
+  AddNew(&table);
   table.Add<RecogniseOptions>(
       AddRecogniseVerb, nullptr,
       [&](const RecogniseOptions& options) { return RunRecogniseVerb(options, folder); },

@@ -3,6 +3,7 @@
 #include "cli/program.h"
 #include "cli/verbs/imagine/imagine_command.h"
 #include "cli/verbs/limits/limits_command.h"
+#include "cli/verbs/new/new_command.h"
 
 namespace hires::cli {
 namespace {
@@ -39,6 +40,10 @@ void AddList(const TaskLister& tasks, VerbTable* table) {
       OnSignal::kEnd);
 }
 
+void AddNew(VerbTable* table) {
+  table->Add<NewOptions>(AddNewVerb, nullptr, RunNewVerb, OnSignal::kEnd);
+}
+
 void AddDoctor(const DoctorBackends& backends, VerbTable* table) {
   table->Add<DoctorOptions>(
       AddDoctorVerb, ReportOfDoctor,
@@ -53,6 +58,7 @@ int RunLocalCommandLine(const std::vector<std::string>& arguments,
     AddImagine({}, &table);
     AddLimits(&table);
     AddList(nullptr, &table);
+    AddNew(&table);
     AddDoctor({package_folder, {}, {}}, &table);
     return table.Take();
   };

@@ -13,6 +13,7 @@ void AddImagine(const ImagineBackends& backends, VerbTable* table);
 void AddLimits(VerbTable* table);
 /// @param tasks  none: this program does not plan, and lists no tasks.
 void AddList(const TaskLister& tasks, VerbTable* table);
+void AddNew(VerbTable* table);
 void AddDoctor(const DoctorBackends& backends, VerbTable* table);
 
 /// The program `hires_local`, which has these verbs alone and asks nobody. Never throws.

@@ -149,7 +149,7 @@ void RobotSimulator::RefuseInsideRobot(const world::ObjectState& object, physics
     const auto model = scene_->world.RequireModel(object.model);
     inside = FindInside(model->collisions, object.X_MO, frozen_->shapes_B(), X_MB());
   }
-  if (inside) FailInsideRobot(object, scene_->world, *inside, base().X_MB);
+  if (inside) FailInsideRobot(object, *scene_, X_MB(), *inside);
 }
 
 }  // namespace hires::simulation

@@ -8,6 +8,7 @@
 #include "hires/base/error.h"
 #include "hires/base/text.h"
 #include "hires/localisation/laser_mount.h"
+#include "hires/robot/tray.h"
 
 namespace hires::simulation {
 namespace {
@@ -81,6 +82,23 @@ std::string AtArea(const geometry::Pose2& X_MB, const world::World& world) {
       X_MB.x, X_MB.y, X_MB.yaw, object.name));
 }
 
+/// What helps a thing that stands on the tray; "" for others.
+std::string TrayRemedy(const Scene& scene, const Pose3& X_MB, const world::ObjectState& object) {
+  const robot::Robot& robot = scene.robot;
+  const auto plate = robot::TrayPlateOf(robot);
+  if (!plate) return "";
+  const auto X_RL = robot::ForwardKinematics(robot.model, robot.profile.joints);
+  const Pose3 X_BT = X_RL[*robot.model.FindLink(robot.profile.base_link)].Inverse() *
+                     X_RL[*robot.model.FindLink(robot.profile.tray_link)];
+  const Eigen::Vector3d p_T = (X_MB * X_BT).Inverse() * object.X_MO.translation;
+  if (!robot::IsOverPlate(*plate, p_T)) return "";
+  return fmt::format(
+      "it would stand at ({:.3f}, {:.3f}, {:.3f}) m of '{}': name a free place there in the "
+      "robot's "
+      "profile, object_on_tray: {{xyz: [x, y, z], rpy: [0, 0, 0]}}; the top is at z {:.3f} m",
+      p_T.x(), p_T.y(), p_T.z(), robot.profile.tray_link, plate->upper.z());
+}
+
 }  // namespace
 
 bool Overlap(const std::vector<geometry::Collision>& a, const Pose3& X_MA,
@@ -119,20 +137,24 @@ std::optional<Inside> FindInside(const std::vector<geometry::Collision>& object,
   return deepest;
 }
 
-void FailInsideRobot(const world::ObjectState& object, const world::World& world,
-                     const Inside& inside, const geometry::Pose2& X_MB) {
-  if (IsOfWorld(object, world)) FailBegunInside(object, world, inside, X_MB);
-  const double below = HeightBelowOrigin(*world.RequireModel(object.model));
+void FailInsideRobot(const world::ObjectState& object, const Scene& scene, const Pose3& X_MB,
+                     const Inside& inside) {
+  if (IsOfWorld(object, scene.world))
+    FailBegunInside(object, scene.world, inside, geometry::Flatten(X_MB));
+  const double below = HeightBelowOrigin(*scene.world.RequireModel(object.model));
   const bool is_origin = below > kStartSlack && std::abs(inside.sunk - below) <= kStartSlack;
+  const std::string on_tray = TrayRemedy(scene, X_MB, object);
   const std::string cause =
       is_origin ? fmt::format(
                       "its model '{}' reaches {:.3f} m below its origin, and a pose is that of the "
                       "middle of the underside: raise the shapes in the model by as much",
                       object.model, below)
-                : fmt::format(
-                      "its pose has z {:.3f} m: give the height of what it stands on, or put it on "
-                      "a free place",
-                      object.X_MO.translation.z());
+      : !on_tray.empty()
+          ? on_tray
+          : fmt::format(
+                "its pose has z {:.3f} m: give the height of what it stands on, or put it on "
+                "a free place",
+                object.X_MO.translation.z());
   throw base::ConfigError(
       fmt::format("object '{}' starts inside the robot, {:.3f} m deep in '{}'; {}", object.name,
                   inside.depth, inside.part, cause));

@@ -7,6 +7,7 @@
 
 #include "hires/geometry/shape.h"
 #include "hires/robot/robot_profile.h"
+#include "hires/simulation/scene.h"
 #include "hires/world/world.h"
 
 namespace hires::simulation {
@@ -33,8 +34,8 @@ std::optional<Inside> FindInside(const std::vector<geometry::Collision>& object,
 
 /// Throws: which object is inside of which part, how deep, and what is the likely cause. What
 /// stands where the world's file has it is not to blame: the robot begins there.
-[[noreturn]] void FailInsideRobot(const world::ObjectState& object, const world::World& world,
-                                  const Inside& inside, const geometry::Pose2& X_MB);
+[[noreturn]] void FailInsideRobot(const world::ObjectState& object, const Scene& scene,
+                                  const geometry::Pose3& X_MB, const Inside& inside);
 
 /// Does the object's lowest point lie on top of one of the robot's shapes? Its origin, or the
 /// middle of its outline, is over that shape.

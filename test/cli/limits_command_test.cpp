@@ -1,5 +1,6 @@
 #include "cli/verbs/limits/limits_command.h"
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -106,6 +107,43 @@ TEST(LimitsCommandTest, AFileOfThisFolderIsTaken) {
   EXPECT_EQ(ended.code, 0) << ended.err;
   EXPECT_THAT(ended.out, HasSubstr("ASSUMED"));  // a URDF says nothing of the controller
   EXPECT_THAT(taken.err, AllOf(HasSubstr("coffee_cup.yaml"), HasSubstr("rename it")));
+}
+
+/// A box with a tray of 0.5 x 0.5 m, and a scanner of that radius on its middle.
+std::string Waiter(double radius) {
+  return fmt::format(
+      "<robot name='waiter'><link name='base'><collision><origin xyz='0 0 0.25'/><geometry><box "
+      "size='0.5 0.5 0.48'/></geometry></collision></link><link name='tray'><collision><geometry>"
+      "<box size='0.5 0.5 0.02'/></geometry></collision></link><joint name='t' "
+      "type='fixed'><origin "
+      "xyz='0 0 0.5'/><parent link='base'/><child link='tray'/></joint><link name='lidar'>"
+      "<collision><geometry><cylinder radius='{}' length='0.06'/></geometry></collision></link>"
+      "<joint name='l' type='fixed'><origin xyz='0 0 0.04'/><parent link='tray'/><child "
+      "link='lidar'/></joint></robot>",
+      radius);
+}
+
+TEST(LimitsCommandTest, ATrayWhoseMiddleIsTakenCarriesBesideIt) {
+  const TemporaryFolder folder;
+  folder.Write("waiter.urdf", Waiter(0.06));
+  const std::string json = (folder.path() / "limits.json").string(),
+                    bare = (folder.path() / "waiter.urdf").string(),
+                    profile = folder.Write("bare.yaml", "urdf: waiter.urdf\n");
+  for (const std::string& robot : {bare, profile}) {
+    const Ended ended = Limits({"--object", "coffee_cup", "--robot", robot, "--json", json});
+    EXPECT_EQ(ended.code, 0) << ended.err;
+    EXPECT_THAT(ended.out,
+                AllOf(HasSubstr("as 'lidar' takes the middle"), HasSubstr("robot's own, ASSUMED"),
+                      HasSubstr("left out: "), HasSubstr("# The base's controller is ASSUMED")));
+    const auto numbers = nlohmann::json::parse(base::ReadTextFile(json));
+    EXPECT_EQ(numbers["controller_assumed"], true);
+    EXPECT_EQ(numbers["left_out"].size(), 3u);
+    EXPECT_FALSE(numbers["assumed"].empty());
+  }
+  folder.Write("waiter.urdf", Waiter(0.4));
+  EXPECT_THAT(
+      Limits({"--object", "coffee_cup", "--robot", bare}).err,
+      AllOf(HasSubstr("deep in 'lidar'"), HasSubstr("object_on_tray"), HasSubstr("m of 'tray'")));
 }
 
 TEST(LimitsCommandTest, BadInputIsToldBeforeAnythingIsPlayed) {

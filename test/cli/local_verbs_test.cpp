@@ -9,6 +9,7 @@
 #include "cli/command_run.h"
 #include "cli/package_folder.h"
 #include "hires/base/text.h"
+#include "hires/robot/load_robot.h"
 #include "support/temporary_folder.h"
 
 namespace hires::cli::local_verbs_test {
@@ -28,7 +29,7 @@ Ended RunLocal(std::vector<std::string> words) {
 TEST(LocalVerbsTest, HelpNamesWhatNeedsNoNodes) {
   const Ended ended = RunLocal({"--help"});
   EXPECT_EQ(ended.code, 0);
-  for (const char* verb : {"imagine", "limits", "list", "doctor"}) {
+  for (const char* verb : {"imagine", "limits", "list", "new", "doctor"}) {
     EXPECT_THAT(ended.out, HasSubstr(verb));
   }
   EXPECT_THAT(ended.out, Not(HasSubstr("achieve")));
@@ -104,6 +105,23 @@ TEST(LocalVerbsTest, AsksNobody) {
   const Ended ended = RunLocal({"imagine", "--action", "move_base", "--from", "home"});
   EXPECT_EQ(ended.code, 1);
   EXPECT_THAT(ended.err, HasSubstr("--local"));
+}
+
+TEST(LocalVerbsTest, NewWritesARobotsProfileThatIsTheSameRobot) {
+  const TemporaryFolder folder;
+  const std::string urdf = HIRES_SOURCE_DIR "/urdf/cart.urdf",
+                    profile = (folder.path() / "cart.yaml").string();
+  const Ended ended = RunLocal({"new", "robot", urdf, "--output", profile});
+  EXPECT_EQ(ended.code, 0) << ended.err;
+  EXPECT_THAT(ended.out, HasSubstr("--robot " + profile));
+  EXPECT_EQ(robot::LoadAnyRobot(profile).hash(), robot::LoadAnyRobot(urdf).hash());
+  const Ended again = RunLocal({"new", "robot", urdf, "--output", profile});
+  EXPECT_EQ(again.code, 1);
+  EXPECT_THAT(again.err, HasSubstr("is there already"));
+  EXPECT_EQ(RunLocal({"new", "robot", urdf, "--output", profile, "--force"}).code, 0);
+  EXPECT_EQ(RunLocal({"new"}).code, 1);
+  EXPECT_THAT(RunLocal({"new", "robot", "none.urdf", "--output", profile, "--force"}).err,
+              HasSubstr("none.urdf"));
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "hires/base/hash.h"
+#include "hires/base/text.h"
 #include "reports/limits/motion_limits.h"
 #include "reports/text/report_table.h"
 
@@ -38,14 +39,27 @@ std::string CarYaml(double speed, double turning, double linear, double angular,
       speed, turning, linear, angular, radius);
 }
 
+const char* OwnHeading(bool is_assumed) {
+  return is_assumed ? "robot's own, ASSUMED" : "robot's own";
+}
+
+/// What these limits say nothing of.
+const std::vector<std::string>& LeftOut() {
+  static const std::vector<std::string> texts{
+      "whether the robot itself tips over", "liquids that slosh",
+      "loads that hang over the edge of the tray, or swing"};
+  return texts;
+}
+
 nlohmann::ordered_json OrNull(double value) {
   return std::isinf(value) ? nlohmann::ordered_json() : nlohmann::ordered_json(value);
 }
 
 }  // namespace
 
-std::string ClosedFormText(const std::vector<MotionBounds>& bounds) {
-  std::vector<std::vector<std::string>> rows{{"motion", "closed form", "robot's own", "why"}};
+std::string ClosedFormText(const std::vector<MotionBounds>& bounds, bool is_assumed) {
+  std::vector<std::vector<std::string>> rows{
+      {"motion", "closed form", OwnHeading(is_assumed), "why"}};
   for (const MotionBounds& motion : bounds) {
     rows.push_back({motion.motion, Amount(motion.closed_form, motion),
                     Amount(motion.robots_own, motion), motion.stated});
@@ -56,7 +70,8 @@ std::string ClosedFormText(const std::vector<MotionBounds>& bounds) {
 
 std::string LimitsText(const LimitsReport& report) {
   const int num_checked = report.request.check_truths;
-  std::vector<std::vector<std::string>> rows{{"motion", "limit", "robot's own", "closed form"}};
+  std::vector<std::vector<std::string>> rows{
+      {"motion", "limit", OwnHeading(report.request.is_controller_assumed), "closed form"}};
   if (num_checked > 0) rows[0].push_back(fmt::format("falls of {} new, 10 % above", num_checked));
   for (const MotionLimit& limit : report.limits) {
     const bool is_share = limit.motion == "together";
@@ -80,9 +95,11 @@ std::string LimitsText(const LimitsReport& report) {
           : "driving forward");
   if (report.request.is_controller_assumed) {
     text +=
-        "robot's own: ASSUMED, a URDF does not tell how a base is controlled; a profile does "
-        "(config/robots/cart.yaml is one).\n";
+        "robot's own: ASSUMED to be a PR2's, as no file tells how this base is controlled; "
+        "motion_sets or base_controller.limits of a profile do (config/robots/cart.yaml is "
+        "one).\n";
   }
+  text += "left out: " + base::Join(LeftOut(), "; ") + ".\n";
   if (report.wall_seconds > 0.0) {
     text += fmt::format("{:.0f} s played in {:.1f} s, {:.0f} times as fast as real time\n",
                         report.simulated_seconds, report.wall_seconds,
@@ -109,7 +126,11 @@ std::string LimitsYaml(const LimitsReport& report) {
           : " Before Noetic the keys are\n"
             "# max_trans_vel, max_rot_vel, acc_lim_th. min_vel_trans and min_vel_theta must not "
             "be larger.\n";
-  if (report.request.is_controller_assumed) text += "# The base's controller is ASSUMED.\n";
+  if (report.request.is_controller_assumed) {
+    text +=
+        "# The base's controller is ASSUMED: limits and accelerations are cut off at a PR2's.\n";
+  }
+  text += "# Left out: " + base::Join(LeftOut(), "; ") + ".\n";
   if (report.min_turning_radius > 0.0) {
     return text + CarYaml(speed, part(report.Of("turning").value), linear,
                           part(report.own_angular_acceleration), report.min_turning_radius);
@@ -142,6 +163,8 @@ nlohmann::ordered_json ToJson(const LimitsReport& report) {
           {"model", report.model},
           {"robot", report.robot},
           {"controller_assumed", report.request.is_controller_assumed},
+          {"assumed", report.assumed},
+          {"left_out", LeftOut()},
           {"directions", report.num_directions},
           {"own_angular_acceleration", report.own_angular_acceleration},
           {"max_fall", report.request.max_fall},

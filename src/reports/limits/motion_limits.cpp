@@ -122,6 +122,7 @@ class LimitFinder {
     report_.num_truths = NumTruths(request_.max_fall);
     report_.world_hash = setup_.world_hash;
     report_.robot_hash = setup_.robot_hash;
+    report_.assumed = setup_.scene->robot.assumed;
     report_.physics_hash = setup_.physics_hash;
     report_.is_omnidirectional = controller_.drive == robot::Drive::kOmnidirectional;
     report_.num_directions = report_.is_omnidirectional ? kDirections : 1;
@@ -155,7 +156,8 @@ class LimitFinder {
       throw base::ConfigError(fmt::format(
           "object '{}' falls from the tray of '{}' at a {} of {:.3g} {} already, wanted one that "
           "can "
-          "be carried; put it elsewhere (tray: in the profile) or allow more with --max-fall",
+          "be carried; put it elsewhere (object_on_tray: in the profile) or allow more with "
+          "--max-fall",
           request_.object, setup_.scene->robot.model.name, motion.motion, least, motion.unit));
     }
     const double value = ValueAt(motion.robots_own, *step);

@@ -16,7 +16,7 @@ namespace hires::reports {
 /// What is looked for.
 struct LimitsRequest {
   std::string object;                 ///< on the tray: an instance of the catalogue, or a model
-  bool is_controller_assumed{false};  ///< the robot came without a profile
+  bool is_controller_assumed{false};  ///< no file says what the base can do
   double max_fall{0.01};              ///< share of drives that may lose it, in (0, 1)
   double command_period{0.1};         ///< [s] between two velocities that a local planner commands
   std::uint64_t seed{1};
@@ -57,6 +57,7 @@ struct LimitsReport {
   int num_directions{1};  ///< of driving, evenly around; each truth drives into one of them
   double min_turning_radius{0.0};        ///< [m] of a car-like base; 0: it turns on the spot
   double own_angular_acceleration{0.0};  ///< [rad/s^2] at which the base begins and ends to turn
+  std::vector<std::string> assumed{};    ///< of the robot, as Robot::assumed
   double simulated_seconds{0.0};
   double wall_seconds{0.0};  ///< set by who asked; 0: unknown
 
@@ -86,7 +87,8 @@ std::optional<LimitsReport> FindLimits(const LimitsRequest& request,
                                        const base::Crew& crew);
 
 /// For people: the closed forms beside what the base's controller allows.
-std::string ClosedFormText(const std::vector<MotionBounds>& bounds);
+/// @param is_assumed  no file says what that controller allows.
+std::string ClosedFormText(const std::vector<MotionBounds>& bounds, bool is_assumed);
 /// For people: a table, and what it rests on.
 std::string LimitsText(const LimitsReport& report);
 /// To be pasted: the parameters of move_base's DWAPlannerROS, or for a car-like base

@@ -16,6 +16,7 @@
 #include "hires/base/error.h"
 #include "hires/base/process.h"
 #include "hires/base/text.h"
+#include "hires/robot/load_robot.h"
 #include "reports/task/timeline.h"
 #include "reports/text/configuration_hash.h"
 #include "reports/text/report_json.h"
@@ -67,7 +68,7 @@ ReportOrigin OriginOf(const AchieveOptions& options, const std::string& package_
   origin.inputs = {{"scenario", ScenarioPath(options, package_folder)},
                    {"virtual time", LoopPath(options, package_folder)},
                    {"world", options.files.world},
-                   {"robot", options.files.robot},
+                   {"robot", robot::FileOfRobot(options.files.robot)},
                    {"objects", options.files.objects},
                    {"domain", options.files.domain},
                    {"operators", options.files.operators}};

@@ -20,6 +20,7 @@
 #include "hires/base/hash.h"
 #include "hires/base/text.h"
 #include "hires/imagination/client_config.h"
+#include "hires/robot/load_robot.h"
 #include "hires/skills/action_loader.h"
 #include "reports/text/report_json.h"
 #include "reports/text/report_table.h"
@@ -227,7 +228,7 @@ ReportOrigin OriginOf(const ImagineOptions& options, const ImagineQuery& query, 
                                                    : options.scene},
                    {"world", files.map.empty() ? files.world : ""},
                    {"map", files.map},
-                   {"robot", files.robot},
+                   {"robot", robot::FileOfRobot(files.robot)},
                    {"objects", files.objects},
                    {"uncertainty", has_uncertainty ? files.uncertainty : ""},
                    {"uncertainty over it", files.uncertainty_over}};

@@ -1,7 +1,6 @@
 #include "cli/verbs/limits/limits_command.h"
 
 #include <CLI/CLI.hpp>
-#include <filesystem>
 #include <iostream>
 #include <nlohmann/json.hpp>
 
@@ -12,6 +11,7 @@
 #include "hires/base/process.h"
 #include "hires/base/text.h"
 #include "hires/imagination/client_config.h"
+#include "hires/robot/load_robot.h"
 #include "reports/limits/motion_limits.h"
 #include "reports/text/report_json.h"
 
@@ -28,6 +28,14 @@ imagination::SetupConfig SetupOf(const LimitsOptions& o, const std::string& pack
   imagination::OverridePaths({}, o.robot, o.objects, o.uncertainty, &setup);
   *object = NameOf(o.object, &setup);
   return setup;
+}
+
+/// What was derived of the robot, a line each; "" where its files say all.
+std::string AssumedText(const robot::Robot& robot) {
+  std::string text;
+  for (const std::string& assumed : robot.assumed)
+    text += "assumed of the robot, " + assumed + '\n';
+  return text.empty() ? "" : text + '\n';
 }
 
 /// Limits are found in several parts, each of which would say what is left of itself.
@@ -75,15 +83,17 @@ int RunLimitsVerb(const LimitsOptions& options, const std::string& package_folde
     if (!path.empty()) reports::RequireFolderOf(path);
   }
   reports::LimitsRequest request;
-  const imagination::ImaginationSetup setup =
-      imagination::LoadImaginationSetup(SetupOf(options, package_folder, &request.object));
-  request.is_controller_assumed =
-      base::ToLower(std::filesystem::path(options.robot).extension().string()) == ".urdf";
+  const imagination::SetupConfig config = SetupOf(options, package_folder, &request.object);
+  const imagination::ImaginationSetup setup = imagination::LoadImaginationSetup(config);
+  request.is_controller_assumed = robot::IsMotionAssumed(config.robot);
   request.max_fall = options.max_fall;
   request.seed = options.seed;
   request.check_truths = options.check_truths;
   // Whoever asks reads these while the rest is played.
-  std::cout << reports::ClosedFormText(reports::ClosedFormLimits(request.object, setup)) << '\n'
+  std::cout << AssumedText(setup.scene->robot)
+            << reports::ClosedFormText(reports::ClosedFormLimits(request.object, setup),
+                                       request.is_controller_assumed)
+            << '\n'
             << std::flush;
   const double begin = base::SteadyNow();
   const base::Crew crew = CrewOf(options, cancelled);

@@ -69,7 +69,7 @@ void Note(const base::ParamReader& in, Spelling* spelling) {
 /// Names in a robot's profile; lookups ignore case, people type what they read.
 Spelling SpellingOf(const std::string& robot) {
   Spelling spelling;
-  if (base::ToLower(fs::path(robot).extension().string()) == ".urdf") return spelling;
+  if (!robot::IsProfile(robot)) return spelling;
   base::ParamReader in = base::ParamReader::FromFile(robot);
   if (in.Has("motion_sets")) Note(in.Sub("motion_sets"), &spelling);
   if (!in.Has("upper_body")) return spelling;
