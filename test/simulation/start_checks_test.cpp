@@ -26,8 +26,10 @@ world::ObjectState MillAt(double z) {
 
 std::string WhyInside(const world::ObjectState& object, const world::World& world,
                       const Inside& inside) {
+  Scene scene;
+  scene.world = world;
   try {
-    FailInsideRobot(object, world, inside, {1.0, 2.0, 0.0});
+    FailInsideRobot(object, scene, geometry::Lift({1.0, 2.0, 0.0}), inside);
   } catch (const base::ConfigError& error) {
     return error.what();
   }
