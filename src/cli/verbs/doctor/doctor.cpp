@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "cli/exit_code.h"
+#include "cli/verbs/imagine/imagine_start.h"
 #include "cli/whole_number.h"
 #include "hires/base/error.h"
 #include "hires/imagination/client_config.h"
@@ -148,9 +149,7 @@ void AddDoctorVerb(CLI::App* app, DoctorOptions* o) {
       "read this world, with --robot FILE, and say all that is assumed, left out or "
       "suspected");
   o->verb->add_option("--map", o->files.map, "likewise of a map_server map");
-  o->verb
-      ->add_option("--area", o->files.areas, "with --world or --map: one more area, NAME:x,y,yaw")
-      ->allow_extra_args(false);
+  AddAreaOption(o->verb, &o->files.areas);
   o->verb->add_option("--png", o->files.png, "with --world or --map: picture from above");
   o->verb
       ->add_flag("--no-physics", o->is_without_physics,

@@ -172,7 +172,7 @@ imagination::SetupConfig ConfigOf(const FileDoctorOptions& options,
   imagination::SetupConfig config = imagination::ReadSetupConfig(client.scene);
   imagination::OverridePaths(options.world, options.robot, std::nullopt, std::nullopt, &config);
   if (options.world.empty()) config.map = options.map;
-  for (const std::string& area : options.areas) config.areas.push_back(ReadArea(area));
+  config.areas = ReadAreas(options.areas);
   return config;
 }
 
