@@ -287,9 +287,9 @@ TEST_F(ActionRunnerTest, ABlindRobotStopsAndSaysSo) {
   runner_.CheckFreshness(200.31, "joint_states");
   ASSERT_EQ(ended_.size(), 1u);
   EXPECT_EQ(ended_[0].end, ActionEnd::kFailed);
-  EXPECT_THAT(ended_[0].failure,
-              AllOf(HasSubstr("stale_observation: 0.31 s"), HasSubstr("0.3 s (sens"),
-                    HasSubstr("comes on joint_states")));
+  EXPECT_THAT(ended_[0].failure, testing::AllOf(testing::HasSubstr("stale_observation: 0.31 s"),
+                                                testing::HasSubstr("0.3 s (sens"),
+                                                testing::HasSubstr("comes on joint_states")));
   ASSERT_EQ(sent_.size(), 1u);
   EXPECT_EQ(sent_[0].base_velocity->vx, 0.0);
 }
@@ -349,7 +349,7 @@ TEST_F(ActionRunnerTest, ARobotThatSeesNothingAtAllFailsTheSameWay) {
   EXPECT_THAT(ended_, IsEmpty());
   runner_.CheckFreshness(100.4);
   ASSERT_EQ(ended_.size(), 1u);
-  EXPECT_THAT(ended_[0].failure, HasSubstr("computer is overloaded"));
+  EXPECT_THAT(ended_[0].failure, testing::HasSubstr("computer is overloaded"));
   EXPECT_THAT(sent_, IsEmpty());
 }
 

@@ -26,10 +26,9 @@ world::ObjectState MillAt(double z) {
 
 std::string WhyInside(const world::ObjectState& object, const world::World& world,
                       const Inside& inside) {
-  Scene scene;
-  scene.world = world;
+  const auto scene = MakeScene(world, hires::test_support::TrayRobot());
   try {
-    FailInsideRobot(object, scene, geometry::Lift({1.0, 2.0, 0.0}), inside);
+    FailInsideRobot(object, *scene, geometry::Lift({1.0, 2.0, 0.0}), inside);
   } catch (const base::ConfigError& error) {
     return error.what();
   }
@@ -60,7 +59,7 @@ TEST(StartChecksTest, TheModelsOriginIsBlamedWhereJustThatLiftsItOut) {
   object.model = "sunk";
   EXPECT_THAT(WhyInside(object, room, {"plate", 0.02, 0.1}),
               HasSubstr("reaches 0.100 m below its origin"));
-  EXPECT_THAT(WhyInside(object, room, {"plate", 0.02, 0.15}), HasSubstr("has z 0.350 m"));
+  EXPECT_THAT(WhyInside(object, room, {"plate", 0.02, 0.15}), HasSubstr("name a free place there"));
 }
 
 }  // namespace
