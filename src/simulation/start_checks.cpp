@@ -93,9 +93,9 @@ std::string TrayRemedy(const Scene& scene, const Pose3& X_MB, const world::Objec
   const Eigen::Vector3d p_T = (X_MB * X_BT).Inverse() * object.X_MO.translation;
   if (!robot::IsOverPlate(*plate, p_T)) return "";
   return fmt::format(
-      "it would stand at ({:.3f}, {:.3f}, {:.3f}) m of '{}': name a free place there in the "
-      "robot's "
-      "profile, object_on_tray: {{xyz: [x, y, z], rpy: [0, 0, 0]}}; the top is at z {:.3f} m",
+      "it would stand at ({:.3f}, {:.3f}, {:.3f}) m of '{}', whose top is at z {:.3f} m: put it on "
+      "a free place there, or name one in the robot's profile, object_on_tray: {{xyz: [x, y, z], "
+      "rpy: [0, 0, 0]}}",
       p_T.x(), p_T.y(), p_T.z(), robot.profile.tray_link, plate->upper.z());
 }
 

@@ -205,14 +205,15 @@ bool AnyLinkHas(const ModelLinks& model, const char* element) {
   });
 }
 
+constexpr char kStill[] = "stands still, as an obstacle";
+
 /// Why physics cannot play a model as one body that can move.
 struct Obstacle {
   std::string kind;  ///< of model, reads after "model"; "" if it can be played
-  const char* made;  ///< what is made of it
+  std::string made;  ///< what is made of it
 };
 
 Obstacle WhyStill(const ModelLinks& model, Hold hold) {
-  constexpr char kStill[] = "stands still, as an obstacle";
   if (model.has_moving_joint || hold == Hold::kJoint)
     return {"with joints", "stands still where it is at joint zero, as an obstacle"};
   std::set<int> groups;

@@ -59,7 +59,8 @@ TEST(StartChecksTest, TheModelsOriginIsBlamedWhereJustThatLiftsItOut) {
   object.model = "sunk";
   EXPECT_THAT(WhyInside(object, room, {"plate", 0.02, 0.1}),
               HasSubstr("reaches 0.100 m below its origin"));
-  EXPECT_THAT(WhyInside(object, room, {"plate", 0.02, 0.15}), HasSubstr("name a free place there"));
+  EXPECT_THAT(WhyInside(object, room, {"plate", 0.02, 0.15}),
+              HasSubstr("put it on a free place there"));
 }
 
 }  // namespace

@@ -185,12 +185,13 @@ TEST_F(WildWorldTest, WhatHasNoMassOrHangsTogetherByNothingStandsStill) {
                              Link("b", "1 0 0 0 0 0", Inertial(1, 1))) +
            Model("balloon", Link("l", "0 0 0 0 0 0", Inertial(1, 1) + "<gravity>0</gravity>")));
   EXPECT_EQ(world.statics.size(), 4u);
-  EXPECT_THAT(world.notes,
-              ElementsAre(AllOf(HasSubstr("2 models without mass or inertia"), HasSubstr("first"),
-                                HasSubstr("test.world:3 'carton'")),
-                          AllOf(HasSubstr("1 model of parts that no fixed joint holds together"),
-                                HasSubstr("'pair'")),
-                          AllOf(HasSubstr("without gravity"), HasSubstr("'balloon'"))));
+  EXPECT_THAT(
+      world.notes,
+      ElementsAre(AllOf(HasSubstr("2 models without mass or inertia (<inertial>): stands still"),
+                        HasSubstr("first"), HasSubstr("test.world:3 'carton'")),
+                  AllOf(HasSubstr("1 model of parts that no fixed joint holds together"),
+                        HasSubstr("'pair'")),
+                  AllOf(HasSubstr("without gravity"), HasSubstr("'balloon'"))));
 }
 
 TEST_F(WildWorldTest, WhatHasNoShapeIsLeftOutAndCounted) {
