@@ -96,15 +96,15 @@ std::string NameOf(const StaticBody& body, const geometry::Collision& shape);
 /// Where what is called so stands in its file; "" where that is not known.
 std::string SourceOf(const std::string& name, const World& world);
 
-/// Reads an SDF world. Models with `<static>true</static>` (or one link that is fixed to the world)
-/// become StaticBody, single-link models become loose objects (one ObjectModel per distinct
-/// description), `<frame>` elements become areas, and
-/// `<hires:extent>xmin ymin xmax ymax</hires:extent>` in one says where things stand on it.
-/// `model://name` is looked for in `models/name/` next to the world file, in `model_path` and in
-/// GAZEBO_MODEL_PATH / SDF_PATH.
-/// @throws base::ConfigError naming file, element and remedy: malformed SDF, two models of one
-/// name, missing mesh or model, loose objects with joints, unphysical inertia, shapes that are not
-/// supported, poses that are not finite or lie more than 1 km away.
+/// Reads an SDF world as docs/command_line.md tells. Models that are `<static>` or fixed to the
+/// world become StaticBody, those that can move and are one body loose objects (one ObjectModel per
+/// distinct description), all others StaticBody as well; `<frame>` elements become areas, and
+/// `<hires:extent>xmin ymin xmax ymax</hires:extent>` in one says where things stand on it. What is
+/// played otherwise than it is written, or left out, is said in World::notes and to base::Log.
+/// @param model_path  Where `model://name` is looked for besides (ModelFoldersFor).
+/// @throws base::ConfigError naming all that is wrong, each with file, element and remedy:
+/// malformed SDF, two models of one name, missing meshes or models, unphysical inertia of what can
+/// move, shapes that are not supported, poses that are not finite or lie more than 1 km away.
 World LoadWorld(const std::string& sdf_path, const std::vector<std::string>& model_path = {});
 
 /// Reads a single-link object from an SDF model (.sdf, model.sdf) or a URDF (.urdf), or a cylinder
