@@ -8,6 +8,7 @@
 #include <sstream>
 
 #include "base/files/nearest_file.h"
+#include "base/trimmed.h"
 #include "hires/base/error.h"
 #include "hires/base/spelling.h"
 #include "hires/base/text.h"
@@ -39,10 +40,7 @@ std::string NameIn(const std::string& xml) {
   std::size_t begin = bare.find("<name>");
   if (begin == std::string::npos) return "";
   begin += 6;
-  const std::string inside = bare.substr(begin, bare.find('<', begin) - begin);
-  const std::size_t first = inside.find_first_not_of(" \t\r\n");
-  if (first == std::string::npos) return "";
-  return inside.substr(first, inside.find_last_not_of(" \t\r\n") + 1 - first);
+  return Trimmed(bare.substr(begin, bare.find('<', begin) - begin));
 }
 
 fs::path Normal(const std::string& folder) {

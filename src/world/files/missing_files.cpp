@@ -6,6 +6,7 @@
 #include "hires/base/text.h"
 
 namespace hires::world {
+
 void MissingFiles::Add(const std::string& place, const std::string& error) {
   const bool has_place = error.rfind(place + ": ", 0) == 0;
   const std::string text = has_place ? error.substr(place.size() + 2) : error;

@@ -8,6 +8,7 @@
 #include <cstdlib>
 #include <filesystem>
 
+#include "base/trimmed.h"
 #include "hires/base/error.h"
 #include "hires/base/spelling.h"
 #include "hires/base/text.h"
@@ -138,9 +139,7 @@ std::string FileNamedIn(const tinyxml2::XMLElement& model) {
     best = sdf->GetText();
     best_minor = minor;
   }
-  const std::size_t begin = best.find_first_not_of(" \t\r\n");
-  if (begin == std::string::npos) return "";
-  return best.substr(begin, best.find_last_not_of(" \t\r\n") - begin + 1);
+  return base::Trimmed(best);
 }
 
 }  // namespace

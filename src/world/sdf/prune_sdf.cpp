@@ -10,6 +10,7 @@
 #include <sdf/SDFImpl.hh>
 #include <set>
 
+#include "base/trimmed.h"
 #include "hires/base/spelling.h"
 #include "hires/base/text.h"
 
@@ -286,11 +287,7 @@ class Pruner {
 
 std::string TrimmedText(const XMLElement* element) {
   const char* text = element == nullptr ? nullptr : element->GetText();
-  if (text == nullptr) return "";
-  const std::string whole = text;
-  const std::size_t begin = whole.find_first_not_of(" \t\r\n");
-  if (begin == std::string::npos) return "";
-  return whole.substr(begin, whole.find_last_not_of(" \t\r\n") - begin + 1);
+  return text == nullptr ? "" : base::Trimmed(text);
 }
 
 void FillEmptyModel(XMLElement* model) {
