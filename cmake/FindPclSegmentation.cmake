@@ -1,4 +1,5 @@
-# Finds PCL's segmentation as the target PCL::Segmentation. Debian's PCLConfig.cmake wants VTK and Qt, too.
+# Finds PCL's segmentation as the target PCL::Segmentation, and where it is there the reader of its files, which
+# links VTK, as PCL::Io. Debian's PCLConfig.cmake wants VTK and Qt, too.
 find_path(PclSegmentation_INCLUDE pcl/segmentation/lccp_segmentation.h
   PATH_SUFFIXES pcl-1.14 pcl-1.13 pcl-1.12 pcl-1.11 pcl-1.10)
 set(PclSegmentation_LIBRARIES)
@@ -20,4 +21,13 @@ if(PclSegmentation_FOUND AND NOT TARGET PCL::Segmentation)
   set_target_properties(PCL::Segmentation PROPERTIES
     INTERFACE_INCLUDE_DIRECTORIES ${PclSegmentation_INCLUDE}
     INTERFACE_LINK_LIBRARIES "${PclSegmentation_LIBRARIES};Eigen3::Eigen")
+endif()
+
+find_library(PclSegmentation_io_LIBRARY pcl_io)
+mark_as_advanced(PclSegmentation_io_LIBRARY)
+if(PclSegmentation_FOUND AND PclSegmentation_io_LIBRARY AND NOT TARGET PCL::Io)
+  add_library(PCL::Io INTERFACE IMPORTED)
+  set_target_properties(PCL::Io PROPERTIES
+    INTERFACE_INCLUDE_DIRECTORIES ${PclSegmentation_INCLUDE}
+    INTERFACE_LINK_LIBRARIES "${PclSegmentation_io_LIBRARY};PCL::Segmentation")
 endif()

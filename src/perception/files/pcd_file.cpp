@@ -125,7 +125,7 @@ void PcdReader::TakeLine(const std::vector<std::string>& words) {
                                               : header_.points;
     number = WholeNumber(words[1], 0, kMostPoints);
   } else if (key == "DATA") {
-    header_.data = words.size() == 2 ? words[1] : "";
+    header_.data = words.size() == 2 ? base::ToLower(words[1]) : "";
     if (header_.data != "ascii" && header_.data != "binary" && header_.data != "binary_compressed")
       FailLine(fmt::format("DATA is '{}'; wanted ascii, binary or binary_compressed",
                            base::Shortened(header_.data, 40)));
@@ -145,9 +145,9 @@ void PcdReader::TakeFields(const std::vector<std::string>& words) {
     if (words[0] == "SIZE") {
       header_.fields[i].size = WholeNumber(word, 1, 8);
     } else if (words[0] == "COUNT") {
-      header_.fields[i].count = WholeNumber(word, 1, 100000);
+      header_.fields[i].count = WholeNumber(word, 0, 100000);
     } else {
-      header_.fields[i].type = word[0];
+      header_.fields[i].type = word[0] == 'f' ? 'F' : word[0];
     }
   }
 }
@@ -164,6 +164,11 @@ std::uint64_t PcdReader::WholeNumber(const std::string& word, std::uint64_t leas
 }
 
 void PcdReader::CheckHeader() {
+  // Files older than 0.7 say POINTS alone, some others no HEIGHT: as PCL, in one row then.
+  if (header_.height == 0 && header_.points > 0) {
+    header_.height = 1;
+    if (header_.width == 0) header_.width = header_.points;
+  }
   if (header_.points == 0) header_.points = header_.width * header_.height;
   if (header_.width * header_.height != header_.points) {
     Fail(fmt::format("WIDTH {} times HEIGHT {} are not the {} POINTS", header_.width,
@@ -208,12 +213,14 @@ void PcdReader::ReadText(PointCloud* cloud) {
   std::string text;
   cloud->points.resize(header_.points);
   for (std::size_t i = 0; i < cloud->points.size(); ++i) {
-    ++line_;
-    if (!std::getline(in_, text))
-      Fail(fmt::format("ends after {} of {} points", i, cloud->points.size()));
-    std::istringstream split(text);
     std::vector<std::string> words;
-    for (std::string word; split >> word;) words.push_back(word);
+    while (words.empty()) {  // lines of blanks are none
+      ++line_;
+      if (!std::getline(in_, text))
+        Fail(fmt::format("ends after {} of {} points", i, cloud->points.size()));
+      std::istringstream split(text);
+      for (std::string word; split >> word;) words.push_back(word);
+    }
     if (words.size() != header_.point_size) {
       FailLine(fmt::format("has {} values; wanted {}, as the fields say", words.size(),
                            header_.point_size));
