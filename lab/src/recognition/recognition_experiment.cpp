@@ -42,7 +42,7 @@ class TableTrial {
 };
 
 TableTrial::TableTrial(const RecognitionOrder& order)
-    : tables(order.robot, order.recogniser),
+    : tables(order.robot, order.recogniser, order.variety),
       order_(order),
       recogniser_(
           std::make_shared<const Recogniser>(order.recogniser.catalogue, order.recogniser.params)) {
@@ -107,7 +107,8 @@ std::optional<RecognitionReport> TryRecogniser(const RecognitionOrder& order,
     advance(1.0);
   };
   if (!base::DoInParallel(order.tables, order.tables, crew, work)) return std::nullopt;
-  RecognitionReport report{order.tables, order.seed, RecognitionScore(order.recogniser.catalogue)};
+  RecognitionReport report{order.tables, order.seed, RecognitionScore(order.recogniser.catalogue),
+                           order.variety};
   for (int i = 0; i < order.tables; ++i) {
     report.score.Append(scores[i]);
     for (ThingVerdict& thing : left_out[i]) {

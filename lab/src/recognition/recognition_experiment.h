@@ -10,6 +10,7 @@
 #include "base/parallel.h"
 #include "lab/src/experiment/experiment.h"
 #include "hires/perception/recogniser_config.h"
+#include "lab/src/trial/random_tables.h"
 #include "lab/src/trial/recognition_score.h"
 #include "hires/robot/robot_profile.h"
 
@@ -21,6 +22,7 @@ struct RecognitionOrder {
   std::uint64_t seed{2000};  ///< of the first table; each next one has the next
   robot::Robot robot;
   perception::RecogniserConfig recogniser;  ///< things are drawn from its catalogue
+  perception::TableVariety variety;
   /// Told of each table's cloud, as the camera gives it, the robot's own parts in it; by many
   /// threads. Empty: nobody wants them.
   std::function<void(std::uint64_t seed, const perception::PointCloud& cloud)> on_cloud{};
@@ -30,6 +32,7 @@ struct RecognitionReport {
   int tables{0};
   std::uint64_t seed{0};
   perception::RecognitionScore score;
+  perception::TableVariety variety;
   /// Things of the catalogue, looked at by a recogniser that does not know their form; a table
   /// gives those of one form, drawn from all that stand on it.
   std::vector<perception::ThingVerdict> left_out{};

@@ -74,6 +74,10 @@ bool IsUnknown(const ThingVerdict& thing) { return !thing.is_known(); }
 bool IsUnknownAndFound(const ThingVerdict& thing) { return !thing.is_known() && thing.is_found(); }
 bool WasFound(const ThingVerdict& thing) { return thing.is_found(); }
 bool IsRight(const ThingVerdict& thing) { return thing.is_right(); }
+/// Called by the name of something else, which "unknown" is not.
+bool IsMisnamed(const ThingVerdict& thing) {
+  return thing.is_found() && !thing.is_right() && thing.called != perception::kUnknownLabel;
+}
 bool IsAny(const ThingVerdict&) { return true; }
 bool HasOwnLabel(const ThingVerdict& thing) {
   return thing.is_right() && thing.label == thing.model;
@@ -87,6 +91,7 @@ const ThingShare kNamedOfFound{"named_of_found", IsKnownAndFound, IsRight};
 const ThingShare kOwnLabel{"own_label", IsKnown, HasOwnLabel};
 const ThingShare kUnknown{"unknown", IsUnknown, IsRight};
 const ThingShare kUnknownOfFound{"unknown_of_found", IsUnknownAndFound, IsRight};
+const ThingShare kMisnamed{"misnamed_of_found", WasFound, IsMisnamed};
 
 std::vector<reports::ClusterCounts> CountsOf(const std::vector<ThingVerdict>& things,
                                     const ThingShare& share) {

@@ -15,7 +15,8 @@ struct ThingShare {
   bool (*is_in)(const perception::ThingVerdict&);
   bool (*is_hit)(const perception::ThingVerdict&);
 };
-extern const ThingShare kFound, kNamed, kNamedOfFound, kOwnLabel, kUnknown, kUnknownOfFound;
+extern const ThingShare kFound, kNamed, kNamedOfFound, kOwnLabel, kUnknown, kUnknownOfFound,
+    kMisnamed;
 
 /// By table.
 std::vector<reports::ClusterCounts> CountsOf(const std::vector<perception::ThingVerdict>& things,

@@ -20,7 +20,7 @@ using nlohmann::ordered_json;
 using perception::RecognitionSums;
 using perception::ThingVerdict;
 
-constexpr double kBands[] = {0.0, 1.1, 1.3, 1.5, 1.7, 9.9};  // [m] from the camera
+constexpr double kBands[] = {0.0, 1.1, 1.3, 1.5, 1.7, 2.0, 2.5, 3.0, 3.5, 4.0, 9.9};  // [m] from the camera
 const char* const kTorso[] = {"down", "half way", "up"};
 
 /// Some of the things, and which.
@@ -110,6 +110,7 @@ std::vector<std::string> RowOf(const Part& part) {
           BareShare(part.things, kOwnLabel),
           ShareText(part.things, kUnknown),
           BareShare(part.things, kUnknownOfFound),
+          ShareText(part.things, kMisnamed),
           MillimetresText(sums.median_error, sums.error_95),
           MillimetresText(sums.median_error_B, sums.error_B_95),
           reports::NumberText(sums.median_turn * 180.0 / geometry::kPi, 1)};
@@ -170,7 +171,7 @@ std::string ReportText(const RecognitionReport& report) {
   std::vector<std::vector<std::string>> rows{
       {"things of 400 points or more", "number", "found [%]",
        "named rightly up to equal geometry [%]", "... of found", "by its own label [%]",
-       "unknown so called [%]", "... of found", "error by the sensor alone: median / 95 % [mm]",
+       "unknown so called [%]", "... of found", "wrong name, of found [%]", "error by the sensor alone: median / 95 % [mm]",
        "... with the camera's mount", "turned [deg]"}};
   for (const Part& part : PartsOf(things)) rows.push_back(RowOf(part));
   std::string text = fmt::format(
@@ -179,7 +180,7 @@ std::string ReportText(const RecognitionReport& report) {
       "has at least half of its points, and of whose points at least half are its own; distances "
       "are from the camera to the thing, the robot's base stands up to {:.1f} m before the table's "
       "middle\n\n{}{}\n",
-      report.tables, report.seed, perception::TableVariety().farthest, reports::FormatTable(rows),
+      report.tables, report.seed, report.variety.farthest, reports::FormatTable(rows),
       LeftOutRowsText(things));
   text += BoxesText(report) + "\n";
   for (const RecognitionGoal& goal : GoalsOf(report)) text += GoalText(goal);
@@ -200,7 +201,8 @@ ordered_json ToJson(const RecognitionReport& report) {
     const RecognitionSums sums = perception::SumsOf(part.things);
     ordered_json one{{"part", part.name}};
     for (const ThingShare* share :
-         {&kFound, &kNamed, &kNamedOfFound, &kOwnLabel, &kUnknown, &kUnknownOfFound})
+         {&kFound, &kNamed, &kNamedOfFound, &kOwnLabel, &kUnknown, &kUnknownOfFound,
+          &kMisnamed})
       one[share->name] = ShareToJson(part.things, *share);
     one["median_error"] = reports::NumberOrNull(sums.median_error);
     one["error_95"] = reports::NumberOrNull(sums.error_95);
@@ -212,9 +214,10 @@ ordered_json ToJson(const RecognitionReport& report) {
   for (const auto& [names, count] : ConfusionsOf(things))
     confusions.push_back({{"kind", names.first}, {"called", names.second}, {"count", count}});
   return {{"schema", "hires/recognition_experiment"},
-          {"version", 3},
+          {"version", 4},
           {"tables", report.tables},
           {"seed", report.seed},
+          {"farthest", report.variety.farthest},
           {"parts", parts},
           {"left_out",
            {{"found", ShareToJson(report.left_out, kFound)},

@@ -29,6 +29,10 @@ void AddRecognitionVerb(CLI::App* experiment, RecognitionOptions* o) {
       "without a value, as with few tables (some 250 decide where nothing goes wrong)");
   verb->add_option("--tables", o->tables, "how many, default 500; each has 1 to 8 things")
       ->check(cli::NumberBetween(1, 1000000));
+  verb->add_option("--farthest", o->farthest,
+                   "[m] of the robot's base from the table's middle, at most; default 1.4, for "
+                   "which the goals are")
+      ->check(cli::NumberBetween(0.9, 6.0));
   verb->add_option("--seed", o->seed, "of the first table; each next one has the next")
       ->check(cli::WholeNumber());
   verb->add_option("--objects", o->objects, "another catalogue of objects (YAML)");
@@ -50,6 +54,7 @@ int RunRecognitionVerb(const RecognitionOptions& options, const std::string& pac
   RecognitionOrder order;
   order.tables = options.tables;
   order.seed = options.seed;
+  order.variety.farthest = options.farthest;
   const auto scene = imagination::ReadSetupConfig(package_folder + "/config/scene.yaml");
   order.robot = robot::LoadAnyRobot(scene.robot);
   order.recogniser = perception::ReadRecogniserConfig(

@@ -14,6 +14,7 @@ namespace hires::lab {
 struct RecognitionOptions {
   std::string config, objects, json, clouds;
   int tables{500}, threads{0};
+  double farthest{1.4};
   std::uint64_t seed{2000};
   bool quiet{false};
   CLI::App* verb{nullptr};
