@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "hires/geometry/angles.h"
 
@@ -13,7 +14,6 @@ namespace {
 
 using geometry::Pose2;
 
-constexpr double kGoodFit = 0.5;      // with less, a wider search is tried
 constexpr double kLostFit = 0.2;      // with less, a scan fits nothing
 constexpr double kBetterFit = 0.1;    // by which the wider search has to win
 constexpr int kChainHalf = 10;        // keyframes to either side of a place seen before
@@ -25,6 +25,9 @@ constexpr double kSameHeading = 1.0;  // [rad]
 constexpr double kDrift = 0.05;       // [m / m] of a map that is not tied together
 constexpr double kYawDrift = 0.004;   // [rad / m]
 constexpr double kTies = 0.1;         // [m] sd of a place seen before that ties the map together
+constexpr double kReturned = 2.0;     // [m] from a place seen before
+constexpr int kReturnedHalf = 5;      // keyframes to either side of it
+constexpr std::size_t kMostReturns = 30;
 const Eigen::Vector3d kUnknownStep(1.0, 1.0, 0.3), kUnknownPlace(30.0, 30.0, 3.0);
 const Eigen::Vector3d kEdgeFloor(0.01, 0.01, 0.003);  // [m], [m], [rad] sd of the best match
 
@@ -91,6 +94,10 @@ Pose2 KeyframeMap::Add(SurfacePoints points, SurfacePoints few, const ScanMatch&
   return graph_.pose(k);
 }
 
+void KeyframeMap::NoteBreak() {
+  if (size() > 0 && (breaks_.empty() || breaks_.back() != size())) breaks_.push_back(size());
+}
+
 std::vector<PlacedPoints> KeyframeMap::Placed(int first, int last) const {
   std::vector<PlacedPoints> placed;
   for (int i = std::max(0, first); i <= last; ++i)
@@ -123,6 +130,7 @@ void KeyframeMap::CloseLoop() {
     if (!graph_.CloseLoop(edge, is_large)) continue;
     if (WorstPositionSd(*match) > kTies) return;  // along a corridor the map may still be off
     ++num_loops_;
+    breaks_.erase(std::upper_bound(breaks_.begin(), breaks_.end(), *place), breaks_.end());
     way_at_loop_ = keyframes_[k].way;
     return;
   }
@@ -133,20 +141,34 @@ double KeyframeMap::UntiedWay(int i) const {
   return keyframes_.back().way - std::max(way_at_loop_, keyframes_[i].way);
 }
 
-/// The keyframe nearest to the last one, of those far enough back on the way.
-std::optional<int> KeyframeMap::PlaceSeenBefore(bool same_heading) const {
-  const int k = size() - 1;
+/// The keyframe nearest to keyframe k, of those far enough back on the way.
+/// @param radius_of  [m] around k, for each of them.
+template <typename RadiusOf>
+std::optional<int> KeyframeMap::NearestBefore(int k, bool same_heading,
+                                              const RadiusOf& radius_of) const {
   std::optional<int> nearest;
   double best = std::numeric_limits<double>::infinity();
   for (int j = 0; j < k; ++j) {
     if (keyframes_[k].way - keyframes_[j].way < params_.loop_length) break;
     if (same_heading && AngleBetween(graph_.pose(j), graph_.pose(k)) > kSameHeading) continue;
     const double distance = DistanceBetween(graph_.pose(j), graph_.pose(k));
-    if (distance >= std::min(best, params_.loop_radius + kDrift * UntiedWay(j))) continue;
+    if (distance >= std::min(best, radius_of(j))) continue;
     best = distance;
     nearest = j;
   }
   return nearest;
+}
+
+std::optional<int> KeyframeMap::PlaceSeenBefore(bool same_heading) const {
+  return NearestBefore(size() - 1, same_heading,
+                       [&](int j) { return params_.loop_radius + kDrift * UntiedWay(j); });
+}
+
+/// What was seen around a place before keyframe k came back to it.
+SurfaceMap KeyframeMap::MapAround(int place, int half, int k) const {
+  int last = std::min(place + half, k - 1);
+  while (keyframes_[k].way - keyframes_[last].way < params_.loop_length / 2.0) --last;
+  return SurfaceMap(Placed(place - half, last));
 }
 
 /// The last keyframe by the scans around a place, which it may be off by the more the longer the
@@ -156,15 +178,32 @@ std::optional<ScanMatch> KeyframeMap::MatchWithPlace(int place) const {
   const double unsure = UntiedWay(place);
   const SearchWindow window{std::min(0.3 + kDrift * unsure, 4.0),
                             std::min(0.1 + kYawDrift * unsure, 0.4)};
-  int last = std::min(place + kChainHalf, k - 1);
-  while (keyframes_[k].way - keyframes_[last].way < params_.loop_length / 2.0) --last;
-  const SurfaceMap map(Placed(place - kChainHalf, last));
+  const SurfaceMap map = MapAround(place, kChainHalf, k);
   const SurfacePoints& few = keyframes_[k].few;
   const Pose2 found = SearchMatch(map, few, graph_.pose(k), window);
   const ScanMatch match = RefineMatch(map, few, found, std::nullopt, params_.surface_sd);
   const bool is_good =
       match.fit >= params_.min_fit && DistanceBetween(match.X_MB, found) < kSettles;
   return is_good ? std::make_optional(match) : std::nullopt;
+}
+
+/// Poses of neither are changed: who lies beside what was seen before is found so, too.
+MapReturns KeyframeMap::Returns() const {
+  std::vector<std::pair<int, int>> returns;
+  for (int k = 0; k < size(); k += 2) {
+    const auto place = NearestBefore(k, true, [](int) { return kReturned; });
+    if (place) returns.emplace_back(k, *place);
+  }
+  MapReturns judged;
+  const std::size_t step = 1 + returns.size() / kMostReturns;
+  for (std::size_t i = 0; i < returns.size(); i += step) {
+    const auto [k, place] = returns[i];
+    const auto fit = FitAt(MapAround(place, kReturnedHalf, k), keyframes_[k].few, graph_.pose(k));
+    if (!fit) continue;
+    ++judged.num_judged;
+    if (*fit < kGoodFit) ++judged.num_apart;
+  }
+  return judged;
 }
 
 /// A large correction is believed once the next one agrees with it: rooms may be alike.

@@ -31,6 +31,12 @@ class KeyframeMap {
   const geometry::Pose2& pose(int i) const { return graph_.pose(i); }
   int size() const { return graph_.size(); }
   int num_loops() const { return num_loops_; }
+  int num_breaks() const { return static_cast<int>(breaks_.size()); }
+  MapReturns Returns() const;
+
+  /// What is added from now on may stand wrongly beside what is there, until a place seen before
+  /// ties the two together.
+  void NoteBreak();
 
  private:
   struct Keyframe {
@@ -47,7 +53,10 @@ class KeyframeMap {
   void RebuildLocalMap();
   void CloseLoop();
   double UntiedWay(int i) const;
+  template <typename RadiusOf>
+  std::optional<int> NearestBefore(int k, bool same_heading, const RadiusOf& radius_of) const;
   std::optional<int> PlaceSeenBefore(bool same_heading) const;
+  SurfaceMap MapAround(int place, int half, int k) const;
   std::optional<ScanMatch> MatchWithPlace(int place) const;
   bool IsWitnessed(const geometry::Pose2& X_before, const geometry::Pose2& X_after);
 
@@ -58,6 +67,7 @@ class KeyframeMap {
   std::optional<Correction> asked_;  // not yet believed
   double way_at_loop_{0.0};          // [m] when the map was last tied together
   int num_loops_{0};
+  std::vector<int> breaks_;  // keyframes before which the map may be broken
 };
 
 }  // namespace hires::mapping

@@ -13,6 +13,7 @@
 #include "hires/base/error.h"
 #include "hires/base/progress.h"
 #include "hires/geometry/angles.h"
+#include "hires/mapping/map_doubt.h"
 #include "hires/robot/odometry_jumps.h"
 #include "mapping/draw_grid.h"
 #include "mapping/keyframe_map.h"
@@ -28,6 +29,7 @@ constexpr double kMatchSpacing = 0.05;  // [m] between points that are matched
 constexpr double kJumpSd = 0.3;         // [m], [rad] after a reset of the odometry
 constexpr double kUntoldSd = 0.1;       // [m], [rad] between scans without odometry
 constexpr double kSearchedSd = 0.05;    // [m], [rad] of a pose that was searched for
+constexpr double kTurnsTold = 0.5;      // [rad^2] of steps that tell whether turns are alike
 constexpr double kFitsNothing = 0.9;    // share of scans from which on there is no map
 constexpr double kUsualRange = 3.0;     // [m] in rooms
 constexpr double kSuspicious = 20.0;    // [m] more than that in the median is another unit
@@ -91,7 +93,14 @@ class Mapper::Impl {
   }
   std::optional<localisation::TimedPose> newest() const;
   MapCounts counts() const {
-    return {keyframes_.size(), keyframes_.num_loops(), num_lost_, odometry_jumps_};
+    return {keyframes_.size(),
+            keyframes_.num_loops(),
+            num_lost_,
+            odometry_jumps_,
+            static_cast<int>(records_.size()),
+            num_searched_,
+            keyframes_.num_breaks(),
+            turned_ > kTurnsTold ? turned_alike_ / turned_ : 1.0};
   }
   MapSketch sketch() const;
   MapResult Result();
@@ -115,6 +124,7 @@ class Mapper::Impl {
   void TakeFirstWaiting();
   void TakeScan(const RobotLog::Scan& scan);
   void TakeReset();
+  void NoteBreak(const SurfacePoints& few, const std::optional<ScanMatch>& match, bool is_due);
   PosePrior Predict(const RobotLog::Scan& scan);
   void Keep(const RobotLog::Scan& scan);
   Pose2 PoseAt(std::size_t record) const;
@@ -130,11 +140,14 @@ class Mapper::Impl {
   Pose2 X_MB_;                 // at the last scan
   std::optional<Pose2> X_OB_;  // odometry there
   double time_{0.0}, way_{0.0};
+  double turn_{0.0};                        // [rad] that odometry told since the last scan
+  double turned_{0.0}, turned_alike_{0.0};  // [rad^2] by odometry, and by it and the laser
 
   std::vector<Record> records_;                               // of all scans
   std::vector<std::shared_ptr<const RobotLog::Scan>> drawn_;  // those that show something new
   std::vector<std::size_t> drawn_records_;                    // which they are
-  int num_lost_{0}, odometry_jumps_{0};
+  int num_lost_{0}, num_searched_{0}, odometry_jumps_{0};
+  bool was_unfit_{false};   // the last scan saw much, and fitted nothing
   int resets_of_track_{0};  // that were taken
 };
 
@@ -166,16 +179,32 @@ void Mapper::Impl::TakeScan(const RobotLog::Scan& scan) {
   SurfacePoints few = Thinned(points, kMatchSpacing);
   const std::optional<ScanMatch> match = keyframes_.Match(few, prior);
   if (!match && keyframes_.size() > 0) ++num_lost_;
+  const Pose2 X_MBefore = X_MB_;
   X_MB_ = match ? match->X_MB : prior.X_MB;
+  if (match) turned_alike_ += turn_ * geometry::WrapToPi(X_MB_.yaw - X_MBefore.yaw);
+  if (match) turned_ += turn_ * turn_;
   const bool is_due = !points.empty() && keyframes_.IsDue(X_MB_);
+  NoteBreak(few, match, is_due);
   // Else the next slip of the odometry would be looked for from here on, beside this one.
-  if (match && match->is_searched) anchor_ = {X_MB_, scan.X_OB, kSearchedSd};
+  if (match && match->is_searched) {
+    anchor_ = {X_MB_, scan.X_OB, kSearchedSd};
+    ++num_searched_;
+  }
   if (keyframes_.size() == 0 || is_due) {
     X_MB_ =
         keyframes_.Add(std::move(points), std::move(few), match ? *match : ByOdometry(prior), way_);
     anchor_ = {X_MB_, scan.X_OB, 0.0};
   }
   Keep(scan);
+}
+
+/// One scan alone may be spoilt; a keyframe or a second scan that fits nothing is a break, and so
+/// is what was found only by a search and fits badly.
+void Mapper::Impl::NoteBreak(const SurfacePoints& few, const std::optional<ScanMatch>& match,
+                             bool is_due) {
+  const bool is_doubtful = match ? match->is_searched && match->fit < kGoodFit : SeesMuch(few);
+  if (is_doubtful && (match || is_due || was_unfit_)) keyframes_.NoteBreak();
+  was_unfit_ = is_doubtful && !match;
 }
 
 /// From the anchor on, not from the last scan: where walls tell nothing, as along a corridor, the
@@ -185,6 +214,7 @@ PosePrior Mapper::Impl::Predict(const RobotLog::Scan& scan) {
   const Pose2 moved = is_told ? X_OB_->Inverse() * *scan.X_OB : Pose2{};
   const bool is_jump = is_told && jumps_.IsJump(moved, scan.time - time_);
   if (is_jump) ++odometry_jumps_;
+  turn_ = is_jump ? 0.0 : geometry::WrapToPi(moved.yaw);
   if (is_jump || !is_told) anchor_ = {X_MB_, scan.X_OB, is_jump ? kJumpSd : kUntoldSd};
   if (!is_jump) way_ += moved.position().norm();
   X_OB_ = scan.X_OB;
@@ -213,17 +243,19 @@ std::optional<localisation::TimedPose> Mapper::Impl::newest() const {
 }
 
 MapSketch Mapper::Impl::sketch() const {
-  MapSketch sketch{drawn_, {}, params_.resolution, params_.max_range};
+  MapSketch sketch{drawn_, {}, params_.resolution, params_.max_range, keyframes_.Returns()};
   for (const std::size_t record : drawn_records_) sketch.X_MBs.push_back(PoseAt(record));
   return sketch;
 }
 
 MapResult Mapper::Impl::Result() {
   while (!waiting_.empty()) TakeFirstWaiting();
-  MapResult result{counts(), {}, {}};
+  MapResult result{counts(), {}, {}, {}};
   for (std::size_t i = 0; i < records_.size(); ++i)
     result.trajectory.push_back({records_[i].time, PoseAt(i)});
-  result.grid = Draw(sketch());
+  const MapSketch drawn = sketch();
+  result.grid = Draw(drawn);
+  result.evidence = EvidenceOf(drawn, result.grid);
   return result;
 }
 

@@ -2,6 +2,7 @@
 
 #include <Eigen/Dense>
 #include <Eigen/Eigenvalues>
+#include <algorithm>
 #include <cmath>
 #include <vector>
 
@@ -14,6 +15,7 @@ using geometry::Pose2;
 
 constexpr int kMostIterations = 20;
 constexpr double kFits = 0.1;             // [m] from a point to its wall
+constexpr int kFewFacing = 20;            // points that tell how well a scan fits
 constexpr double kParallel = 0.3;         // [rad] between faces that count as parallel
 constexpr double kRobust = 3.0;           // sd from which on a distance counts less
 constexpr double kMatchConverged = 1e-4;  // [m], [rad]
@@ -140,6 +142,25 @@ double WorstPositionSd(const ScanMatch& match) {
   Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> solver;
   solver.computeDirect(covariance);
   return std::sqrt(std::max(solver.eigenvalues()[1], 0.0));
+}
+
+bool SeesMuch(const SurfacePoints& points) {
+  return std::count_if(points.begin(), points.end(),
+                       [](const SurfacePoint& point) { return point.has_normal(); }) >= kFewFacing;
+}
+
+std::optional<double> FitAt(const SurfaceMap& map, const SurfacePoints& points, const Pose2& X_MB) {
+  if (!SeesMuch(points)) return std::nullopt;
+  const Pose2 turn{0.0, 0.0, X_MB.yaw};
+  int num_facing = 0, num_fitting = 0;
+  for (const SurfacePoint& point : points) {
+    if (!point.has_normal()) continue;
+    ++num_facing;
+    const Eigen::Vector2d p = X_MB * point.p;
+    const SurfaceMap::Piece* piece = map.Nearest(p, turn * point.n);
+    if (piece != nullptr && std::abs(piece->n.dot(p - piece->p)) < kFits) ++num_fitting;
+  }
+  return static_cast<double>(num_fitting) / num_facing;
 }
 
 ScanMatch RefineMatch(const SurfaceMap& map, const SurfacePoints& points, const Pose2& guess,

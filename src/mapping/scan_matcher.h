@@ -6,6 +6,8 @@
 
 namespace hires::mapping {
 
+constexpr double kGoodFit = 0.5;  ///< with less of a scan, a wider search is tried
+
 /// What odometry tells of a pose before the laser is asked.
 struct PosePrior {
   geometry::Pose2 X_MB;
@@ -24,6 +26,14 @@ struct ScanMatch {
 
 /// [m] sd of the position in the direction of which least is known.
 double WorstPositionSd(const ScanMatch& match);
+
+/// Whether at least 20 points have normals.
+bool SeesMuch(const SurfacePoints& points);
+
+/// Share of the points with normals that lie within 0.1 m on a piece of wall; nothing where few
+/// have one.
+std::optional<double> FitAt(const SurfaceMap& map, const SurfacePoints& points,
+                            const geometry::Pose2& X_MB);
 
 /// From `guess`, by Gauss-Newton on the distances of points to pieces of wall. Normals have noise,
 /// which along a hall would add up to more than its few other walls tell: faces that are turned by

@@ -22,7 +22,8 @@ using nlohmann::json;
 using ::testing::HasSubstr;
 
 /// A robot drives 2 m ahead in a room from (-2, -2) to (5, 2); its odometry tells 5 % more.
-std::string DriveAhead() {
+/// @param is_half_spoilt  every second scan shows no walls, but points here and there.
+std::string DriveAhead(bool is_half_spoilt = false) {
   std::string text = "# CARMEN log\nPARAM robot_front_laser_max 20 nohost 0\n";
   for (int k = 0; k <= 40; ++k) {
     const double x = 0.05 * k, told = 1.05 * x;
@@ -32,7 +33,8 @@ std::string DriveAhead() {
       const double ahead = std::cos(angle) > 1e-6 ? (5.0 - x) / std::cos(angle) : 100.0;
       const double beside =
           std::abs(std::sin(angle)) > 1e-6 ? 2.0 / std::abs(std::sin(angle)) : 100.0;
-      text += fmt::format(" {:.2f}", std::min(ahead, beside));
+      const bool is_spoilt = is_half_spoilt && k % 2 == 1;
+      text += fmt::format(" {:.2f}", is_spoilt ? 1.0 + i % 3 : std::min(ahead, beside));
     }
     text += fmt::format(" {0} 0 0 {0} 0 0 {1:.2f} nohost {1:.2f}\n", told, 100.0 + 0.1 * k);
   }
@@ -63,12 +65,26 @@ TEST_F(MapCommandTest, MapAndTrajectoryAreWritten) {
   const json told = json::parse(std::ifstream(Path("map.json")));
   EXPECT_EQ(told["schema"], "hires/map");
   EXPECT_EQ(told["scans"], 41);
+  EXPECT_EQ(told["doubt"], "");
   EXPECT_NEAR(told["length"].get<double>(), 2.0, 0.03) << "not 2.1, as odometry says";
   std::ifstream path(Path("path.tum"));
   std::vector<std::string> lines;
   for (std::string line; std::getline(path, line);) lines.push_back(line);
   ASSERT_EQ(lines.size(), 41u);
   EXPECT_EQ(lines[0], "100.000000 0.000000 0.000000 0 0 0 0.000000000 1.000000000");
+}
+
+TEST_F(MapCommandTest, DoubtfulMapIsWrittenAndCalledSo) {
+  const std::string log = folder_.Write("drive.log", DriveAhead(true));
+  const Ended ended = Map({log, "--output", Path("room.yaml"), "--json", Path("map.json")});
+  EXPECT_EQ(ended.code, kExitDoubtful) << ended.err;
+  EXPECT_THAT(ended.out, HasSubstr("\n" + Path("room.yaml") + " is doubtful: "));
+  EXPECT_THAT(ended.out, HasSubstr("20 of 41 scans fitted nothing"));
+  EXPECT_THAT(ended.out, HasSubstr("; to do: "));
+  EXPECT_THAT(json::parse(std::ifstream(Path("map.json")))["doubt"].get<std::string>(),
+              HasSubstr("20 of 41 scans"));
+  EXPECT_NO_THROW(world::LoadMap(Path("room.yaml")));
+  EXPECT_EQ(Map({log, "--output", Path("room.yaml"), "--json", "-"}).code, kExitDoubtful);
 }
 
 TEST_F(MapCommandTest, CellsAreAsLargeAsAsked) {

@@ -10,6 +10,7 @@
 
 #include "hires/base/error.h"
 #include "hires/localisation/filtered_log.h"
+#include "hires/mapping/map_doubt.h"
 #include "hires/mapping/map_judge.h"
 #include "support/rounds.h"
 #include "support/simulated_drive.h"
@@ -51,6 +52,7 @@ void ExpectTrue(const MapResult& result, const SimulatedDrive& drive,
   EXPECT_LE(errors.walls.to_map.median, 0.03);
   EXPECT_LE(errors.walls.to_map.most, 0.06);
   EXPECT_GT(errors.walls.to_map.count, 500u);
+  EXPECT_EQ(WhyDoubtful(result, result.evidence), "");
 }
 
 TEST(MapperTest, RoomsAreMappedWhereTheyAre) {

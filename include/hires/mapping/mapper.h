@@ -31,11 +31,34 @@ struct MapCounts {
   int num_loops{0};       ///< places seen again that tie the map together
   int num_lost{0};        ///< scans that fitted nothing and stand where odometry says
   int odometry_jumps{0};  ///< resets, taken as no motion
+  int num_scans{0};       ///< all of them
+  int num_searched{0};    ///< scans by which the laser showed the odometry wrong by more than
+                          ///< odometry_sd allows; the laser was believed
+  int num_breaks{0};      ///< where scans that saw walls fitted what was there badly or not at all,
+                          ///< and no place seen before ties both sides together since
+  double turns_alike{1.0};  ///< [rad/rad] turns by the laser for turns by odometry: -1 where beams
+                            ///< are in reverse order; 1 also where nobody turned
+};
+
+/// Whether places to which the robot came back look as before: within 2 m and 1 rad of where it
+/// had been MapperParams::loop_length of way before, as far as the map tells.
+struct MapReturns {
+  int num_judged{0};  ///< 30 at most, evenly over the drive
+  int num_apart{0};   ///< where less than half of the scan fits what was seen there before
+};
+
+/// How far a finished map explains what it was made of (map_doubt.h).
+struct MapEvidence {
+  MapReturns returns;
+  int num_beams{0};           ///< that were judged
+  double explained{1.0};      ///< share that ended within 0.1 m of an occupied cell
+  double through_walls{0.0};  ///< share that went on 0.5 m and more behind a wall, and not along it
 };
 
 struct MapResult : MapCounts {
   world::OccupancyGrid grid;           ///< free what beams passed, occupied where they ended
   localisation::TimedPath trajectory;  ///< one pose for each scan that was added
+  MapEvidence evidence;
 };
 
 /// What a map is drawn from, apart from the mapper: another thread may draw it.
@@ -43,6 +66,7 @@ struct MapSketch {
   std::vector<std::shared_ptr<const localisation::RobotLog::Scan>> scans;  ///< show something new
   std::vector<geometry::Pose2> X_MBs;                                      ///< one for each
   double resolution{0.05}, max_range{30.0};                                ///< [m]
+  MapReturns returns;
 };
 
 /// Takes time in proportion to all beams and their lengths.

@@ -11,6 +11,7 @@
 #include "hires/base/error.h"
 #include "hires/base/log.h"
 #include "hires/base/process.h"
+#include "hires/mapping/map_doubt.h"
 #include "hires/ros/names/robot_topics.h"
 #include "hires/ros/place/scan_messages.h"
 #include "hires/ros/robot/robot_messages.h"
@@ -213,17 +214,19 @@ void MappingNode::BeginDrawing() {
   std_msgs::Header header;
   header.stamp = *last_scan_;
   header.frame_id = params_.names.map_frame;
-  drawing_ = std::async(std::launch::async, &MappingNode::DrawFrom, mapper_->sketch(), header,
-                        num_restarts_);
+  drawing_ = std::async(std::launch::async, &MappingNode::DrawFrom, mapper_->sketch(), counts_,
+                        header, num_restarts_);
 }
 
 MappingNode::DrawnMap MappingNode::DrawFrom(const mapping::MapSketch& sketch,
+                                            const mapping::MapCounts& counts,
                                             const std_msgs::Header& header, long restart) {
   const double begun = hires::base::SteadyNow();
   DrawnMap drawn;
   drawn.restart = restart;
   try {
     drawn.grid = mapping::Draw(sketch);
+    drawn.doubt = mapping::WhyDoubtful(counts, mapping::EvidenceOf(sketch, drawn.grid));
     drawn.msg = ToMsg(drawn.grid, header);
   } catch (const ConfigError& error) {
     drawn.why_not = error.what();
@@ -243,6 +246,7 @@ void MappingNode::TakeDrawn(bool is_awaited) {
   if (!why_not_drawn_.empty()) return Refuse(params_.names.map, why_not_drawn_);
   map_ = std::move(drawn);
   ++num_maps_;
+  if (!map_->doubt.empty()) warnings_.Tell(params_.names.map, "doubtful", map_->doubt);
   map_publisher_.publish(map_->msg);
   metadata_.publish(map_->msg.info);
 }
@@ -260,7 +264,8 @@ std::string MappingNode::Complaint() const {
     const std::string silence = "no scan that can be used comes any more";
     return last_drop_.empty() ? silence : silence + ": " + last_drop_;
   }
-  return is_lost_ ? "lost: the last scan fits nothing and stands where odometry says" : "";
+  if (is_lost_) return "lost: the last scan fits nothing and stands where odometry says";
+  return map_ && !map_->doubt.empty() ? "the map is doubtful: " + map_->doubt : "";
 }
 
 void MappingNode::Diagnose(diagnostic_updater::DiagnosticStatusWrapper& status) {
@@ -275,6 +280,7 @@ void MappingNode::Diagnose(diagnostic_updater::DiagnosticStatusWrapper& status) 
   status.add("loops", counts_.num_loops);
   status.add("lost scans", counts_.num_lost);
   status.add("odometry jumps", counts_.odometry_jumps);
+  status.add("doubt", map_ ? map_->doubt : "");
   status.add("clock begun again", num_restarts_);
   status.add("maps", num_maps_);
   status.add("drawing the last map [s]", drawing_took_);

@@ -33,6 +33,7 @@ class MappingNode {
   struct DrawnMap {
     hires::world::OccupancyGrid grid;
     nav_msgs::OccupancyGrid msg;
+    std::string doubt;    // what speaks against it; empty: nothing
     std::string why_not;  // empty: it is there
     double took{0.0};     // [s]
     long restart{0};      // num_restarts_ when it was begun
@@ -56,7 +57,8 @@ class MappingNode {
   void AddToMap(const PlacedScan& scan);
   void PublishTransform(const PlacedScan& scan);
   bool IsDue() const;
-  static DrawnMap DrawFrom(const hires::mapping::MapSketch& sketch, const std_msgs::Header& header,
+  static DrawnMap DrawFrom(const hires::mapping::MapSketch& sketch,
+                           const hires::mapping::MapCounts& counts, const std_msgs::Header& header,
                            long restart);
   void BeginDrawing();  ///< @pre there is a scan, and no map is being drawn
   /// Publishes the map that is being drawn.  @param is_awaited  even if it is not yet done.

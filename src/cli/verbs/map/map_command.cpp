@@ -20,6 +20,7 @@
 #include "hires/imagination/imagination_setup.h"
 #include "hires/localisation/log_file.h"
 #include "hires/localisation/path_error.h"
+#include "hires/mapping/map_doubt.h"
 #include "hires/mapping/map_judge.h"
 #include "hires/mapping/mapper.h"
 #include "hires/simulation/self_localisation.h"
@@ -81,6 +82,7 @@ ordered_json ToJson(const Judgement& judgement, const MapOptions& options) {
 
 ordered_json ToJson(const MapResult& result, const MapOptions& options, const std::string& map) {
   const world::OccupancyGrid& grid = result.grid;
+  const mapping::MapEvidence& evidence = result.evidence;
   return {{"schema", "hires/map"},
           {"version", 1},
           {"log", options.is_driven ? options.log_output : options.drive.log},
@@ -99,7 +101,14 @@ ordered_json ToJson(const MapResult& result, const MapOptions& options, const st
           {"keyframes", result.num_keyframes},
           {"loops", result.num_loops},
           {"lost", result.num_lost},
-          {"odometry_jumps", result.odometry_jumps}};
+          {"odometry_jumps", result.odometry_jumps},
+          {"odometry_contradicted", result.num_searched},
+          {"breaks", result.num_breaks},
+          {"returns", evidence.returns.num_judged},
+          {"returns_apart", evidence.returns.num_apart},
+          {"explained", evidence.explained},
+          {"through_walls", evidence.through_walls},
+          {"doubt", mapping::WhyDoubtful(result, evidence)}};
 }
 
 std::string Summary(const MapResult& result, const std::string& map) {
@@ -114,7 +123,21 @@ std::string Summary(const MapResult& result, const std::string& map) {
   if (result.odometry_jumps > 0)
     text +=
         fmt::format("odometry jumped {} times, which counts as no motion\n", result.odometry_jumps);
+  if (result.num_searched > 0) {
+    text += fmt::format(
+        "at {} scans laser and odometry disagreed by more than odometry may err; the laser was "
+        "believed\n",
+        result.num_searched);
+  }
   return text;
+}
+
+/// The last line; empty for a map that nothing speaks against.
+std::string Doubt(const MapResult& result, const std::string& map) {
+  const std::string why = mapping::WhyDoubtful(result, result.evidence);
+  if (why.empty()) return "";
+  return fmt::format("{} is doubtful: {}; to do: {}\n", map, why,
+                     mapping::WhatToDo(result, result.evidence));
 }
 
 std::string Summary(const Judgement& judgement) {
@@ -269,15 +292,16 @@ int RunMapVerb(const MapOptions& options, const std::string& package_folder,
   world::SaveMap(result.grid, map);
   if (!options.trajectory.empty())
     localisation::WriteTumTrajectory(result.trajectory, options.trajectory);
+  const std::string doubt = Doubt(result, map);
   ordered_json json = ToJson(result, options, map);
   if (judgement) json["judgement"] = ToJson(*judgement, options);
   if (options.json == "-") {
     std::cout << json.dump(2) << '\n';
-    return kExitRecommended;
+  } else {
+    std::cout << Summary(result, map) << (judgement ? Summary(*judgement) : "") << doubt;
+    if (!options.json.empty()) reports::WriteJson(json, options.json);
   }
-  std::cout << Summary(result, map) << (judgement ? Summary(*judgement) : "");
-  if (!options.json.empty()) reports::WriteJson(json, options.json);
-  return kExitRecommended;
+  return doubt.empty() ? kExitRecommended : kExitDoubtful;
 }
 
 }  // namespace hires::cli

@@ -33,7 +33,8 @@ void AddMapVerb(CLI::App* app, MapOptions* options);
 /// Makes a map of a log, and tells where the robot was; or of a drive through a simulated world,
 /// and tells how true it is.
 /// @param read_bag  may be empty; then bags are refused.
-/// @return kExitRecommended or kExitCancelled.  @throws base::ConfigError for bad input.
+/// @return kExitRecommended, kExitDoubtful (the map is written all the same) or kExitCancelled.
+/// @throws base::ConfigError for bad input.
 int RunMapVerb(const MapOptions& options, const std::string& package_folder,
                const ReadDriveBag& read_bag, const std::function<bool()>& cancelled);
 

@@ -1,0 +1,28 @@
+#pragma once
+
+#include <string>
+
+#include "hires/mapping/mapper.h"
+
+// Whether a map is worth what it looks like, where the world is not known that was mapped. The
+// numbers in the texts of these functions were chosen on drives through made-up buildings, some of
+// which no map can be right of: docs/notes_navigation.md.
+namespace hires::mapping {
+
+/// How far a map explains the scans that it was drawn from: of at most 200 scans, evenly over the
+/// drive, and 90 beams of each. Cells of other than some 0.05 m are drawn again so for this; of a
+/// map that is too large for it nothing is told of beams.
+/// @param grid  as Draw makes it of the sketch.
+MapEvidence EvidenceOf(const MapSketch& sketch, const world::OccupancyGrid& grid);
+
+/// What speaks against a map: that at more than two fifths (and at least five) of the places to
+/// which the drive came back the scan does not fit what was seen there before, that more than 0.8 %
+/// of the beams went through walls, that less than 65 % ended at one, that the map is broken
+/// (MapCounts::num_breaks), that the laser sees less than half of the turns that odometry tells, or
+/// them reversed, or that more than a third of the scans fitted nothing. Empty: nothing does.
+std::string WhyDoubtful(const MapCounts& counts, const MapEvidence& evidence);
+
+/// What may help against what WhyDoubtful says; empty where that is.
+std::string WhatToDo(const MapCounts& counts, const MapEvidence& evidence);
+
+}  // namespace hires::mapping
