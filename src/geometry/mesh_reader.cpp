@@ -4,6 +4,7 @@
 #include <assimp/scene.h>
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <assimp/IOSystem.hpp>
 #include <assimp/Importer.hpp>
 #include <filesystem>
@@ -15,7 +16,7 @@ namespace hires::geometry {
 namespace {
 
 constexpr std::size_t kMaxBytes = 64u << 20;
-constexpr std::size_t kMaxTriangles = 2000000;
+constexpr std::size_t kMaxTriangles = 500000;
 constexpr double kMaxCoordinate = 1e4;  // [m]
 
 /// Stands for an empty disk, so that a mesh cannot pull in other files.
@@ -48,6 +49,17 @@ void CheckScale(const std::string& path, const Eigen::Vector3d& scale) {
                          scale.x(), scale.y(), scale.z()));
 }
 
+/// Polygons count as what they are cut into.
+std::size_t NumTrianglesIn(const aiScene& scene) {
+  std::size_t count = 0;
+  for (unsigned i = 0; i < scene.mNumMeshes; ++i) {
+    const aiMesh& part = *scene.mMeshes[i];
+    for (unsigned k = 0; k < part.mNumFaces; ++k)
+      count += std::max(part.mFaces[k].mNumIndices, 2u) - 2u;
+  }
+  return count;
+}
+
 /// @param is_whole  Nodes and their names are not needed.
 const aiScene& Import(Assimp::Importer* importer, const std::string& path,
                       const std::string& format, const std::string& bytes, bool is_whole) {
@@ -62,12 +74,20 @@ const aiScene& Import(Assimp::Importer* importer, const std::string& path,
                                aiComponent_NORMALS | aiComponent_TANGENTS_AND_BITANGENTS |
                                    aiComponent_COLORS | aiComponent_TEXCOORDS |
                                    aiComponent_MATERIALS | aiComponent_TEXTURES);
-  const aiScene* scene = importer->ReadFileFromMemory(
-      bytes.data(), bytes.size(),
-      aiProcess_Triangulate | aiProcess_RemoveComponent |
-          (is_whole ? static_cast<unsigned>(aiProcess_PreTransformVertices) : 0u) |
-          aiProcess_JoinIdenticalVertices | aiProcess_FindDegenerates | aiProcess_SortByPType,
-      format.c_str());
+  const aiScene* scene =
+      importer->ReadFileFromMemory(bytes.data(), bytes.size(), 0u, format.c_str());
+  // What follows takes ten times as long as reading.
+  const std::size_t num_triangles = scene == nullptr ? 0 : NumTrianglesIn(*scene);
+  if (num_triangles > kMaxTriangles) {
+    Fail(path, fmt::format("has {} triangles, at most {} are read; decimate it", num_triangles,
+                           kMaxTriangles));
+  }
+  if (scene != nullptr) {
+    scene = importer->ApplyPostProcessing(
+        aiProcess_Triangulate | aiProcess_RemoveComponent |
+        (is_whole ? static_cast<unsigned>(aiProcess_PreTransformVertices) : 0u) |
+        aiProcess_JoinIdenticalVertices | aiProcess_FindDegenerates | aiProcess_SortByPType);
+  }
   if (scene == nullptr) {
     Fail(path, fmt::format("no valid mesh: {}; export it again", importer->GetErrorString()));
   }
@@ -141,10 +161,6 @@ TriangleMesh PartOf(const aiScene& scene, const std::string& path, const Eigen::
 
 void CheckMesh(const std::string& path, const TriangleMesh& mesh) {
   if (mesh.triangles.empty()) Fail(path, "holds no triangles; export the solid, not its outline");
-  if (mesh.triangles.size() > kMaxTriangles) {
-    Fail(path, fmt::format("has {} triangles, at most {} are read; decimate it",
-                           mesh.triangles.size(), kMaxTriangles));
-  }
   for (const Eigen::Vector3d& p : mesh.vertices) {
     if (p.allFinite() && p.cwiseAbs().maxCoeff() <= kMaxCoordinate) continue;
     Fail(path, fmt::format("corner ({}, {}, {}) is not finite or beyond {} m; is the scale right "

@@ -26,7 +26,8 @@
 namespace hires::world {
 namespace {
 
-constexpr std::uint64_t kMaxModels = 10000;
+constexpr std::size_t kMaxShapes = 50'000;        // that stand, of all models together
+constexpr std::size_t kMaxTriangles = 2'000'000;  // of their meshes
 constexpr char kExtent[] = "hires:extent";
 constexpr std::size_t kModelsPerPart = 64;  // some 30 MB of libsdformat's
 
@@ -78,13 +79,16 @@ class WorldBuilder {
  public:
   WorldBuilder(const ResourceFinder* finder, const std::vector<WorldJoint>& joints,
                LoadNotes* notes)
-      : reading_{*finder, &meshes_, notes}, joints_(joints), notes_(notes) {}
+      : reading_{*finder, &meshes_, notes}, joints_(joints), notes_(notes) {
+    FindHolds();
+  }
 
   void Add(const SdfWorldPart& part, const std::string& path) {
     const sdf::World& in = part.world;
     if (part.is_first) Try([&] { SetGravity(in, path); });
     for (std::uint64_t i = 0; i < in.ModelCount(); ++i) {
       Try([&] { models_[part.places[i]] = WorldModelOf(*in.ModelByIndex(i)); });
+      CheckSize(models_[part.places[i]], path);
     }
     if (!part.is_first) return;
     world_.name = in.Name();
@@ -96,7 +100,6 @@ class WorldBuilder {
   /// Models keep the order of the file till here, as names of kinds depend on it. What comes out is
   /// in the order of names, so that the layout of the file changes no result.
   World Finish(const std::string& path) {
-    CheckNumber(path);
     NoteUselessJoints();
     for (auto& [place, model] : models_) {
       Try([&] { Place(std::move(model)); });
@@ -136,6 +139,21 @@ class WorldBuilder {
     std::optional<Eigen::AlignedBox2d> extent;
   };
 
+  /// A mesh that is placed a hundred times is gone through a hundred times.
+  void CheckSize(const WorldModel& model, const std::string& path) {
+    num_shapes_ += model.shapes.collisions.size();
+    for (const geometry::Collision& collision : model.shapes.collisions) {
+      const auto* mesh =
+          std::get_if<std::shared_ptr<const geometry::TriangleMesh>>(&collision.shape);
+      if (mesh != nullptr) num_triangles_ += (*mesh)->triangles.size();
+    }
+    if (num_shapes_ <= kMaxShapes && num_triangles_ <= kMaxTriangles) return;
+    throw base::ConfigError(fmt::format(
+        "{}: up to model '{}' there are {} collision shapes and {} triangles of meshes, at most {} "
+        "and {} are loaded; replace meshes by boxes, or leave models out",
+        path, model.name, num_shapes_, num_triangles_, kMaxShapes, kMaxTriangles));
+  }
+
   void SetGravity(const sdf::World& in, const std::string& path) {
     const auto gravity = in.Gravity();
     const bool is_down = gravity.X() == 0.0 && gravity.Y() == 0.0 && gravity.Z() <= 0.0;
@@ -165,15 +183,19 @@ class WorldBuilder {
 
   /// What the world's own joints do with a model.
   Hold HoldOf(const sdf::Model& model) const {
-    Hold hold = Hold::kNone;
+    const auto held = holds_.find(model.Name());
+    return held == holds_.end() ? Hold::kNone : held->second;
+  }
+
+  void FindHolds() {
     for (const WorldJoint& joint : joints_) {
       const std::string parent = ModelIn(joint.parent), child = ModelIn(joint.child);
-      if (parent != model.Name() && child != model.Name()) continue;
       const bool is_to_world = parent == "world" || child == "world";
-      if (joint.is_fixed && is_to_world) return Hold::kFixed;
-      hold = Hold::kJoint;
+      for (const std::string& name : {parent, child}) {
+        Hold& hold = holds_.emplace(name, Hold::kJoint).first->second;
+        if (joint.is_fixed && is_to_world) hold = Hold::kFixed;
+      }
     }
-    return hold;
   }
 
   void NoteUselessJoints() const {
@@ -200,14 +222,6 @@ class WorldBuilder {
     area.X_MF = PoseIn(frame.SemanticPose(), "world", area.where);
     area.extent = ExtentIn(*frame.Element(), area.where);
     areas_.push_back(std::move(area));
-  }
-
-  void CheckNumber(const std::string& path) const {
-    if (models_.size() <= kMaxModels && areas_.size() <= kMaxModels) return;
-    throw base::ConfigError(fmt::format(
-        "{}: world '{}' has {} models and {} frames, at most {} of each are loaded; join static "
-        "models",
-        path, world_.name, models_.size(), areas_.size(), kMaxModels));
   }
 
   /// Names live in one space, case ignored, as plans and knowledge spell them differently.
@@ -292,9 +306,11 @@ class WorldBuilder {
   MeshCache meshes_;
   ModelReading reading_;
   std::vector<WorldJoint> joints_;
+  std::map<std::string, Hold> holds_;  // by model
   LoadNotes* notes_;
   World world_;
-  std::map<std::size_t, WorldModel> models_;  // by place in the file
+  std::map<std::size_t, WorldModel> models_;      // by place in the file
+  std::size_t num_shapes_{0}, num_triangles_{0};  // of what stands
   std::vector<Area> areas_;
   std::optional<FloorPlane> floor_;
   std::map<std::string, std::string> names_;    // lower case -> where

@@ -6,6 +6,7 @@
 #include <memory>
 #include <numeric>
 #include <set>
+#include <tuple>
 #include <utility>
 
 namespace hires::world {
@@ -123,6 +124,60 @@ bool IsWithin(const geometry::TriangleMesh& part, const geometry::TriangleMesh& 
       });
 }
 
+geometry::Aabb BoundsOfPart(const geometry::TriangleMesh& part) {
+  geometry::Aabb bounds;
+  for (const Eigen::Vector3d& p : part.vertices) bounds.Include(p);
+  return bounds;
+}
+
+bool Holds(const geometry::Aabb& around, const geometry::Aabb& bounds) {
+  return (around.lower.array() <= bounds.lower.array()).all() &&
+         (around.upper.array() >= bounds.upper.array()).all();
+}
+
+/// A part whose faces look inwards, and one round it.
+using Cavity = std::pair<std::size_t, std::size_t>;
+
+/// Meshes may have a hundred thousand parts: along the longest axis, each hollow one is compared
+/// with those alone that are beside it there, by their boxes first.
+std::vector<Cavity> CavitiesIn(const std::vector<geometry::TriangleMesh>& parts) {
+  std::vector<geometry::Aabb> bounds;
+  std::vector<char> is_hollow;
+  geometry::Aabb all;
+  for (const geometry::TriangleMesh& part : parts) {
+    bounds.push_back(BoundsOfPart(part));
+    is_hollow.push_back(SixfoldVolume(part) < 0.0 && IsClosed(part) ? 1 : 0);
+    all.Include(bounds.back());
+  }
+  if (std::count(is_hollow.begin(), is_hollow.end(), 1) == 0) return {};
+  int axis = 0;
+  (all.upper - all.lower).maxCoeff(&axis);
+  std::vector<std::size_t> by_begin(parts.size());
+  std::iota(by_begin.begin(), by_begin.end(), std::size_t{0});
+  // Of two that begin together the longer one first: it may be round the other.
+  std::sort(by_begin.begin(), by_begin.end(), [&](std::size_t a, std::size_t b) {
+    return std::make_tuple(bounds[a].lower[axis], -bounds[a].upper[axis], is_hollow[a], a) <
+           std::make_tuple(bounds[b].lower[axis], -bounds[b].upper[axis], is_hollow[b], b);
+  });
+  std::vector<Cavity> cavities;
+  std::vector<std::size_t> around;  // solid ones that have not ended
+  for (const std::size_t i : by_begin) {
+    if (!is_hollow[i]) {
+      if (IsSolid(parts[i])) around.push_back(i);
+      continue;
+    }
+    const auto has_ended = [&](std::size_t k) {
+      return bounds[k].upper[axis] < bounds[i].lower[axis];
+    };
+    around.erase(std::remove_if(around.begin(), around.end(), has_ended), around.end());
+    for (const std::size_t k : around) {
+      if (Holds(bounds[k], bounds[i]) && IsWithin(parts[i], parts[k])) cavities.emplace_back(i, k);
+    }
+  }
+  std::sort(cavities.begin(), cavities.end());
+  return cavities;
+}
+
 }  // namespace
 
 std::vector<geometry::TriangleMesh> ConnectedParts(const geometry::TriangleMesh& mesh) {
@@ -137,16 +192,9 @@ std::vector<geometry::TriangleMesh> ConnectedParts(const geometry::TriangleMesh&
     if (seen.insert(groups.Find(triangle[0])).second) corner_of.push_back(triangle[0]);
   }
   std::vector<geometry::TriangleMesh> parts = PartsOf(mesh, &groups);
-  bool is_any_hollow = false;
-  for (std::size_t i = 0; i < parts.size(); ++i) {
-    if (SixfoldVolume(parts[i]) >= 0.0 || !IsClosed(parts[i])) continue;
-    for (std::size_t k = 0; k < parts.size(); ++k) {
-      if (k == i || !IsSolid(parts[k]) || !IsWithin(parts[i], parts[k])) continue;
-      groups.Join(corner_of[i], corner_of[k]);
-      is_any_hollow = true;
-    }
-  }
-  return is_any_hollow ? PartsOf(mesh, &groups) : parts;
+  const std::vector<Cavity> cavities = CavitiesIn(parts);
+  for (const auto& [hollow, around] : cavities) groups.Join(corner_of[hollow], corner_of[around]);
+  return cavities.empty() ? parts : PartsOf(mesh, &groups);
 }
 
 bool IsConvex(const geometry::TriangleMesh& mesh, double slack) {

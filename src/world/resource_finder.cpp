@@ -6,6 +6,7 @@
 #include <cstdlib>
 #include <filesystem>
 
+#include "base/files/nearest_file.h"
 #include "hires/base/error.h"
 #include "hires/base/text.h"
 #include "world/sdf/model_folders.h"
@@ -14,6 +15,8 @@ namespace hires::world {
 namespace {
 
 namespace fs = std::filesystem;
+
+constexpr std::size_t kMostGuesses = 200;  // names that are not there; messages list fewer
 
 bool StartsWith(const std::string& text, const std::string& start) {
   return text.compare(0, start.size(), start) == 0;
@@ -38,28 +41,6 @@ void AppendFolders(const std::vector<std::string>& candidates, std::vector<std::
 std::vector<std::string> FoldersInEnvironment(const char* variable) {
   const char* value = std::getenv(variable);
   return value == nullptr ? std::vector<std::string>{} : base::Split(value, ':');
-}
-
-/// "did you mean" for a file that is not there, or for the first of its folders that is not.
-std::string NearestFile(fs::path path) {
-  while (path.has_relative_path() && !IsFolder(path.parent_path())) path = path.parent_path();
-  return Nearest({path.parent_path().string()}, path.filename().string());
-}
-
-std::string NotThere(const std::string& uri, const std::string& name, const std::string& where,
-                     const std::vector<std::string>& folders) {
-  std::string folder_of_name = name.substr(0, name.find('/'));
-  for (const std::string& folder : folders) {
-    if (name.size() > folder_of_name.size() && IsFolder(fs::path(folder) / folder_of_name)) {
-      return fmt::format("{}: '{}' is not there; looked for {}{}", where, uri,
-                         (fs::path(folder) / name).string(), NearestFile(fs::path(folder) / name));
-    }
-  }
-  return fmt::format(
-      "{}: '{}' is not there; looked in {}; add its folder to the model path or to "
-      "one of {}{}",
-      where, uri, folders.empty() ? "no folder" : base::Join(folders, ", "), ModelVariables(),
-      Nearest(folders, folder_of_name));
 }
 
 /// For a command line.
@@ -91,6 +72,36 @@ ResourceFinder::ResourceFinder(const std::vector<std::string>& folders) {
   AppendFolders(folders, &model_folders_);
   package_folders_ = model_folders_;
   AppendFolders(FoldersInEnvironment("ROS_PACKAGE_PATH"), &package_folders_);
+}
+
+std::string ResourceFinder::Guess(const std::string& name,
+                                  const std::function<std::string()>& look) const {
+  const auto known = guesses_.find(name);
+  if (known != guesses_.end()) return known->second;
+  if (guesses_.size() >= kMostGuesses) return "";
+  return guesses_[name] = look();
+}
+
+std::string ResourceFinder::NearestFile(const std::string& path) const {
+  return Guess(path, [&] { return base::DidYouMeanFile(path); });
+}
+
+std::string ResourceFinder::NotThere(const std::string& uri, const std::string& name,
+                                     const std::string& where,
+                                     const std::vector<std::string>& folders) const {
+  const std::string folder_of_name = name.substr(0, name.find('/'));
+  for (const std::string& folder : folders) {
+    const std::string path = (fs::path(folder) / name).string();
+    if (name.size() > folder_of_name.size() && IsFolder(fs::path(folder) / folder_of_name)) {
+      return fmt::format("{}: '{}' is not there; looked for {}{}", where, uri, path,
+                         NearestFile(path));
+    }
+  }
+  return fmt::format(
+      "{}: '{}' is not there; looked in {}; add its folder to the model path or to "
+      "one of {}{}",
+      where, uri, folders.empty() ? "no folder" : base::Join(folders, ", "), ModelVariables(),
+      Guess(folder_of_name, [&] { return NearestName(folders, folder_of_name); }));
 }
 
 std::string ResourceFinder::FindIn(const std::vector<std::string>& folders, const std::string& uri,
@@ -129,7 +140,8 @@ std::string ResourceFinder::FindOfFuel(const std::string& uri, const std::string
   if (name.inside.empty() || Exists(fs::path(folder) / name.inside))
     return name.inside.empty() ? folder : (fs::path(folder) / name.inside).string();
   throw base::ConfigError(fmt::format("{}: '{}': {} has no file {}{}", where, uri, folder,
-                                      name.inside, NearestFile(fs::path(folder) / name.inside)));
+                                      name.inside,
+                                      NearestFile((fs::path(folder) / name.inside).string())));
 }
 
 /// As rospack finds packages; else a folder of that name, without a package.xml, on the same path.
@@ -183,7 +195,7 @@ std::string ResourceFinder::FindBeside(const std::string& uri, const std::string
     if (!Climbs(name) && Exists(fs::path(root) / name)) return (fs::path(root) / name).string();
   }
   throw base::ConfigError(fmt::format("{}: '{}' is not there; looked for {}{}", where, uri,
-                                      path.string(), NearestFile(path)));
+                                      path.string(), NearestFile(path.string())));
 }
 
 std::string ResourceFinder::FindModel(const std::string& uri, const std::string& where,

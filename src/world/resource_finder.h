@@ -1,5 +1,7 @@
 #pragma once
 
+#include <functional>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -45,10 +47,19 @@ class ResourceFinder {
                            const std::string& where) const;
   std::string FindBeside(const std::string& uri, const std::string& from_file,
                          const std::string& where) const;
+  /// Why `name`, which `uri` gives, is in none of the folders.
+  std::string NotThere(const std::string& uri, const std::string& name, const std::string& where,
+                       const std::vector<std::string>& folders) const;
+  /// " (did you mean ...?)" for a file, or "".
+  std::string NearestFile(const std::string& path) const;
+  /// What `look` finds near a name that is not there: once for each name, and for the first ones
+  /// alone, as a world may name thousands and folders may be large.
+  std::string Guess(const std::string& name, const std::function<std::string()>& look) const;
 
   std::vector<std::string> model_folders_;
   std::vector<std::string> package_folders_;
   base::PackageFinder packages_;
+  mutable std::map<std::string, std::string> guesses_;  // by name
 };
 
 }  // namespace hires::world

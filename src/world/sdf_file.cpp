@@ -199,6 +199,7 @@ SdfFiles ReadWorldFiles(const std::string& path, const ResourceFinder& finder, L
   std::string why = WhyNoWorld(base::ReadTextFile(path, XmlLimits().max_file_bytes), path);
   if (!why.empty()) throw base::ConfigError(why);
   SdfFiles files = ReadSdfFiles(path, finder, {}, notes);
+  if (notes->IsFull()) notes->ThrowIfProblems(path);
   const SdfFile& file = files.at(path);
   why = WhyNoWorldBy(file.root, path);
   if (!why.empty()) throw base::ConfigError(why);

@@ -231,9 +231,10 @@ Obstacle WhyStill(const ModelLinks& model, Hold hold) {
   for (const PlacedLink& link : model.links) {
     if (!HasShape(*link.link) || HasWholeInertial(*link.link)) continue;
     if (HasAutomaticInertia(*link.link)) {
+      if (AutomaticMassOf(*link.link, link.X_ML)) continue;
       return {
           "whose inertia is to be worked out from its shape (<inertial auto='true'>), which is "
-          "not done",
+          "done for boxes, cylinders and spheres alone",
           kStill};
     }
     return {"without mass or inertia (<inertial>)", kStill};
@@ -248,8 +249,15 @@ geometry::MassProperties MassOf(const ModelLinks& model) {
                                    [](const PlacedLink& link) { return HasShape(*link.link); });
   std::vector<geometry::MassProperties> parts;
   for (const PlacedLink& link : model.links) {
-    if (link.group == shaped->group && HasWholeInertial(*link.link))
+    if (link.group != shaped->group) continue;
+    const auto automatic = HasAutomaticInertia(*link.link)
+                               ? AutomaticMassOf(*link.link, link.X_ML)
+                               : std::nullopt;  // what is written beside it is not meant, then
+    if (automatic) {
+      parts.push_back(*automatic);
+    } else if (HasWholeInertial(*link.link)) {
       parts.push_back(MassPropertiesOf(*link.link, link.X_ML));
+    }
   }
   return parts.size() == 1 ? parts.front() : Together(parts);
 }

@@ -16,6 +16,9 @@ struct XmlLimits {
   int max_element_depth{64};
   int max_include_depth{16};
   int max_elements{200000};
+  int max_models{10000};    ///< of a world or model, and as many frames
+  int max_links{2000};      ///< of a model
+  int max_pose_chain{100};  ///< of poses that are relative to one another in a world or model
 };
 
 /// Checks well-formedness, size and depth of the XML in `text` without looking at its meaning.

@@ -84,7 +84,7 @@ TEST_F(MissingFilesTest, AllThatAWorldLacksIsToldAtOnceWithLineNearestAndRemedy)
           break;
         case 2:
           uri = "model://" + name + "/bodi.obj";
-          wanted.push_back({at, uri, "models/" + name + "/bodi.obj", "'body.obj'?"});
+          wanted.push_back({at, uri, "models/" + name + "/bodi.obj", "body.obj'?"});
           break;
         default:
           uri = "model://" + wrong + "/body.obj";

@@ -4,7 +4,12 @@
 
 #include <cmath>
 #include <locale>
+#include <sdf/Box.hh>
+#include <sdf/Collision.hh>
+#include <sdf/Cylinder.hh>
 #include <sdf/Element.hh>
+#include <sdf/Geometry.hh>
+#include <sdf/Sphere.hh>
 #include <sstream>
 
 #include "hires/base/check.h"
@@ -74,6 +79,31 @@ geometry::Pose3 PoseOf(const sdf::ElementPtr& element, const std::string& where)
   return pose;
 }
 
+constexpr double kDefaultDensity = 1000.0;  // [kg/m^3] SDF's
+
+/// About its centre; nothing of other shapes.
+std::optional<geometry::MassProperties> SolidOf(const sdf::Geometry& shape, double density) {
+  const auto solid = [&](const auto& of_shape, double volume) {
+    geometry::MassProperties result;
+    result.mass = density * volume;
+    result.I_BBcm = geometry::SolidInertia(of_shape, result.mass);
+    return result;
+  };
+  if (const sdf::Box* box = shape.BoxShape()) {
+    const auto size = box->Size();
+    return solid(geometry::Box{{size.X(), size.Y(), size.Z()}}, size.X() * size.Y() * size.Z());
+  }
+  if (const sdf::Cylinder* cylinder = shape.CylinderShape()) {
+    const double radius = cylinder->Radius(), length = cylinder->Length();
+    return solid(geometry::Cylinder{radius, length}, geometry::kPi * radius * radius * length);
+  }
+  if (const sdf::Sphere* sphere = shape.SphereShape()) {
+    const double radius = sphere->Radius();
+    return solid(geometry::Sphere{radius}, 4.0 / 3.0 * geometry::kPi * radius * radius * radius);
+  }
+  return std::nullopt;
+}
+
 sdf::ElementPtr InertialOf(const sdf::Link& link) { return ChildOf(link.Element(), kInertial); }
 
 }  // namespace
@@ -110,6 +140,34 @@ geometry::MassProperties MassPropertiesOf(const sdf::Link& link, const geometry:
     throw base::ConfigError(fmt::format("{}: {}; correct its <inertial>", where, wrong));
   CheckPose(X_BI, where + ": centre of mass");
   return result;
+}
+
+std::optional<geometry::MassProperties> AutomaticMassOf(const sdf::Link& link,
+                                                        const geometry::Pose3& X_BL) {
+  const std::string where = WhereOf(link);
+  const sdf::ElementPtr of_link = ChildOf(InertialOf(link), "density");
+  std::vector<geometry::MassProperties> parts;
+  for (std::uint64_t i = 0; i < link.CollisionCount(); ++i) {
+    const sdf::Collision& collision = *link.CollisionByIndex(i);
+    const sdf::ElementPtr own = ChildOf(collision.Element(), kDensity);
+    const sdf::ElementPtr said = own != nullptr ? own : of_link;
+    double density = kDefaultDensity;
+    if (said != nullptr) {
+      const std::vector<double> numbers = NumbersIn(ValueText(said), "density", where);
+      density = numbers.size() == 1 ? numbers[0] : std::nan("");
+    }
+    if (!(density > 0.0) || !std::isfinite(density)) {
+      throw base::ConfigError(
+          fmt::format("{}: a <density> is '{}', wanted kg/m^3 above 0", where, ValueText(said)));
+    }
+    const auto solid = SolidOf(*collision.Geom(), density);
+    if (!solid) return std::nullopt;
+    const geometry::Pose3 X_BC = X_BL * PoseIn(collision.SemanticPose(), "", where);
+    const Eigen::Matrix3d R_BC = X_BC.rotation.toRotationMatrix();
+    parts.push_back({solid->mass, X_BC.translation, R_BC * solid->I_BBcm * R_BC.transpose()});
+  }
+  if (parts.empty()) return std::nullopt;
+  return parts.size() == 1 ? parts.front() : Together(parts);
 }
 
 geometry::MassProperties Together(const std::vector<geometry::MassProperties>& parts) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <sdf/Link.hh>
 #include <vector>
 
@@ -12,8 +13,15 @@ namespace hires::world {
 /// which nobody has weighed.
 bool HasWholeInertial(const sdf::Link& link);
 
-/// SDF 1.11: from shapes and densities.
+/// Whether <inertial auto="true"> (SDF 1.11) asks for mass and inertia of shapes and densities.
 bool HasAutomaticInertia(const sdf::Link& link);
+
+/// That mass and inertia, in a body B: each box, cylinder and sphere is solid, of the <density> of
+/// its <collision>, else of the <inertial>, else 1000 kg/m^3, as SDF has it.
+/// @return nothing where a collision has another shape, or none has one.
+/// @throws base::ConfigError naming file, line and link where a density is no number above 0.
+std::optional<geometry::MassProperties> AutomaticMassOf(const sdf::Link& link,
+                                                        const geometry::Pose3& X_BL);
 
 /// The link's mass and inertia, in a body B.
 /// @pre HasWholeInertial

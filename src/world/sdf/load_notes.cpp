@@ -2,52 +2,54 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
+#include <utility>
 
 #include "hires/base/error.h"
+#include "hires/base/short_text.h"
 #include "hires/base/spelling.h"
 #include "hires/base/text.h"
 
 namespace hires::world {
 namespace {
 
-constexpr std::size_t kMostProblems = 50;  // that a message lists
+/// The first ones, and how many more there are.
+std::vector<std::string> Listed(std::vector<std::string> all) {
+  const std::size_t count = all.size();
+  if (count <= LoadNotes::kMostListed) return all;
+  all.resize(LoadNotes::kMostListed);
+  all.push_back(fmt::format("and {} more", count - LoadNotes::kMostListed));
+  return all;
+}
 
 }  // namespace
 
 void LoadNotes::Add(const std::string& noun, const std::string& rest, const std::string& place,
                     int count) {
-  const auto same = std::find_if(kinds_.begin(), kinds_.end(), [&](const Kind& kind) {
-    return kind.noun == noun && kind.rest == rest;
-  });
-  if (same == kinds_.end()) {
+  const auto [known, is_new] = kind_indices_.emplace(std::make_pair(noun, rest), kinds_.size());
+  if (is_new) {
     kinds_.push_back({noun, rest, place, count});
   } else {
-    same->count += count;
+    kinds_[known->second].count += count;
   }
 }
 
-void LoadNotes::AddProblem(const std::string& text) {
+void LoadNotes::AddProblem(const std::string& whole) {
+  const std::string text = base::Shortened(whole);  // a name may be a file long
   const std::size_t colon = text.find(": ");
   const std::string place = colon == std::string::npos ? "" : text.substr(0, colon + 2);
   const std::string rest = text.substr(place.size());
-  const auto same = std::find_if(problems_.begin(), problems_.end(),
-                                 [&](const Problem& one) { return one.text == rest; });
-  if (same == problems_.end()) {
-    problems_.push_back({rest, {place}});
-  } else if (std::find(same->places.begin(), same->places.end(), place) == same->places.end()) {
-    same->places.push_back(place);
-  }
+  const auto [known, is_new] = problem_indices_.emplace(rest, problems_.size());
+  if (is_new) problems_.push_back({rest, place, 0});
+  if (problem_places_.emplace(known->second, place).second) ++problems_[known->second].count;
 }
 
 std::vector<std::string> LoadNotes::ProblemLines() const {
   std::vector<std::string> lines;
   for (const Problem& problem : problems_) {
-    const std::size_t count = problem.places.size();
-    lines.push_back(problem.places.front() + problem.text +
-                    (count > 1 ? fmt::format(" (named {} times)", count) : ""));
+    lines.push_back(problem.first + problem.text +
+                    (problem.count > 1 ? fmt::format(" (named {} times)", problem.count) : ""));
   }
-  return lines;
+  return Listed(std::move(lines));
 }
 
 std::vector<std::string> LoadNotes::Sentences() const {
@@ -56,18 +58,13 @@ std::vector<std::string> LoadNotes::Sentences() const {
     sentences.push_back(fmt::format("{} {}; {}{}", base::Counted(kind.count, kind.noun), kind.rest,
                                     kind.count > 1 ? "first " : "", kind.first));
   }
-  return sentences;
+  return Listed(std::move(sentences));
 }
 
 void LoadNotes::ThrowIfProblems(const std::string& path) const {
   if (problems_.empty()) return;
-  const std::vector<std::string> sentences = Sentences();
-  std::vector<std::string> listed = ProblemLines();
+  const std::vector<std::string> sentences = Sentences(), listed = ProblemLines();
   if (listed.size() == 1 && sentences.empty()) throw base::ConfigError(listed.front());
-  if (listed.size() > kMostProblems) {
-    listed.resize(kMostProblems);
-    listed.push_back(fmt::format("and {} more", problems_.size() - kMostProblems));
-  }
   std::string text =
       fmt::format("{}: cannot be loaded; correct:\n  {}", path, base::Join(listed, "\n  "));
   if (!sentences.empty()) {

@@ -1,6 +1,10 @@
 #pragma once
 
+#include <cstddef>
+#include <map>
+#include <set>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace hires::world {
@@ -21,7 +25,12 @@ class LoadNotes {
   void AddProblem(const std::string& text);
 
   bool HasProblems() const { return !problems_.empty(); }
-  std::vector<std::string> Sentences() const;  ///< in the order of their first places
+  /// More would not be listed: nothing is to be read for them.
+  bool IsFull() const { return problems_.size() > kMostListed; }
+  static constexpr std::size_t kMostListed = 50;  ///< problems, or kinds of notes
+  /// In the order of their first places, at most kMostListed and a line with the number of the
+  /// others.
+  std::vector<std::string> Sentences() const;
   /// @throws base::ConfigError with all problems, and after them what else there is to say, if
   /// there are any.
   void ThrowIfProblems(const std::string& path) const;
@@ -32,13 +41,17 @@ class LoadNotes {
     int count;
   };
   struct Problem {
-    std::string text;  ///< what stands behind the place
-    std::vector<std::string> places;
+    std::string text;   ///< what stands behind the place
+    std::string first;  ///< place
+    std::size_t count;  ///< of places
   };
   std::vector<std::string> ProblemLines() const;
 
   std::vector<Kind> kinds_;
+  std::map<std::pair<std::string, std::string>, std::size_t> kind_indices_;  // by noun and rest
   std::vector<Problem> problems_;
+  std::map<std::string, std::size_t> problem_indices_;            // by text
+  std::set<std::pair<std::size_t, std::string>> problem_places_;  // index and place
 };
 
 }  // namespace hires::world

@@ -8,6 +8,7 @@
 #include <cstdlib>
 #include <filesystem>
 
+#include "base/files/nearest_file.h"
 #include "base/trimmed.h"
 #include "hires/base/error.h"
 #include "hires/base/spelling.h"
@@ -209,7 +210,7 @@ std::string FindAlike(const std::vector<std::string>& folders, const std::string
   return "";
 }
 
-std::string Nearest(const std::vector<std::string>& folders, const std::string& name) {
+std::string NearestName(const std::vector<std::string>& folders, const std::string& name) {
   std::vector<std::string> known;
   for (const std::string& folder : folders) {
     for (const fs::path& entry : EntriesOf(folder)) known.push_back(entry.filename().string());
@@ -234,9 +235,9 @@ std::string ModelFileIn(const std::string& folder_of_versions, const std::string
   const std::string named = root == nullptr ? "" : FileNamedIn(*root);
   const std::string file = folder + "/" + named;
   if (!named.empty() && Exists(file) && !IsFolder(file)) return file;
-  throw base::ConfigError(
-      fmt::format("{}: '{}': {} names no SDF file that is there{}; correct its <sdf>{}", where, uri,
-                  config, named.empty() ? "" : " ('" + named + "')", Nearest({folder}, named)));
+  throw base::ConfigError(fmt::format(
+      "{}: '{}': {} names no SDF file that is there{}; correct its <sdf>{}", where, uri, config,
+      named.empty() ? "" : " ('" + named + "')", named.empty() ? "" : base::DidYouMeanFile(file)));
 }
 
 }  // namespace hires::world

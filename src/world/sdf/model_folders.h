@@ -34,9 +34,9 @@ FuelName FuelNameOf(const std::string& uri);
 /// where there is one; "" if there is none.
 std::string FindAlike(const std::vector<std::string>& folders, const std::string& name);
 
-/// Names of folders or files that may have been meant by a `name` that is not there, quoted after
-/// "; did you mean ": or "".
-std::string Nearest(const std::vector<std::string>& folders, const std::string& name);
+/// Names of folders in `folders` that may have been meant by a `name` that is not there, quoted
+/// after "; did you mean ": or "". Of files base::DidYouMeanFile tells.
+std::string NearestName(const std::vector<std::string>& folders, const std::string& name);
 
 /// The SDF file of a model folder: what its model.config names for the newest SDF that is read,
 /// else model.sdf. Of a folder of versions (of a cache of Fuel) that of the newest.

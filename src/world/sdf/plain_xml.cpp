@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cctype>
 
+#include "base/files/entities.h"
 #include "hires/base/error.h"
 
 namespace hires::world {
@@ -50,6 +51,7 @@ void RefuseWideText(const std::string& text, const std::string& path) {
 
 std::string PlainXml(std::string text, const std::string& path) {
   RefuseWideText(text, path);
+  base::RefuseEntities(text, path);
   if (IsAt(0, "\xEF\xBB\xBF", text)) Blank(0, 3, &text);
   for (std::size_t at = text.find('<'); at != std::string::npos; at = text.find('<', at)) {
     std::size_t end = at;

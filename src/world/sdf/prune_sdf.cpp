@@ -44,8 +44,7 @@ const std::map<std::string, Rule>& Rules() {
          "damping", "origin"}}},
       {"collision",
        {{"pose", "geometry", "surface"},
-        {"laser_retro", "max_contacts", "density", "auto_inertia_params", "mass", "plugin",
-         "material"}}},
+        {"laser_retro", "max_contacts", "auto_inertia_params", "mass", "plugin", "material"}}},
       {"mesh", {{"uri", "scale", "submesh"}, {"convex_decomposition", "filename"}}},
       {"frame", {{"pose"}, {}}},
       {"include", {{"uri", "name", "pose", "static", "placement_frame"}, {"plugin"}}},
@@ -195,6 +194,9 @@ class Pruner {
     if (name == "sdf") TakeVersion(element);
     if (name == "world") TakeOldGravity(element);
     if (name == "link") PrepareLink(element);
+    if (name == "collision") {
+      if (XMLElement* density = element->FirstChildElement("density")) density->SetName(kDensity);
+    }
     if (name == "geometry") PrepareGeometry(element);
     if (name == "joint") PrepareJoint(element);
     if (name == "mesh") {

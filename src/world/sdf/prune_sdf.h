@@ -12,6 +12,7 @@ namespace hires::world {
 /// Elements that stand for others, which libsdformat is not to look at: it would refuse what no
 /// question needs, or does not know them.
 constexpr char kInertial[] = "hires:inertial";  ///< of a <link>, its children as they are
+constexpr char kDensity[] = "hires:density";    ///< of a <collision>
 constexpr char kVisual[] = "hires:visual";      ///< there if the link has a <visual>
 constexpr char kFloats[] = "hires:floats";      ///< the link is <kinematic> or without gravity
 constexpr char kJointType[] = "hires:type";     ///< of a <joint>, which is "fixed" for libsdformat

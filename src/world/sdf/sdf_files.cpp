@@ -13,6 +13,7 @@
 #include "hires/base/text.h"
 #include "world/sdf/line_printer.h"
 #include "world/sdf/plain_xml.h"
+#include "world/sdf/pose_chains.h"
 #include "world/sdf/prune_sdf.h"
 
 namespace hires::world {
@@ -62,6 +63,12 @@ void MakeEmptyModel(XMLElement* include) {
   include->InsertEndChild(link);
 }
 
+/// Ends the walk: what includes such a file would grow further.
+class TooLarge : public base::ConfigError {
+ public:
+  using base::ConfigError::ConfigError;
+};
+
 /// Walks a file and all it includes before libsdformat does, which trusts its input.
 class Walk {
  public:
@@ -105,6 +112,8 @@ class Walk {
     file.root = document.RootElement()->Name();
     if (file.root != "sdf") return file;
     PruneSdf(document.RootElement(), path, &file, notes_);
+    CheckNumbers(*document.RootElement(), path);
+    CheckPoseChains(*document.RootElement(), path, limits_.max_pose_chain);
     Include(document.RootElement(), path, &file);
     CollectNames(*document.RootElement(), &file);
     CheckSize(path, file);
@@ -114,9 +123,36 @@ class Walk {
     return file;
   }
 
+  static int CountOf(const char* name, const XMLElement& parent) {
+    int count = 0;
+    for (const auto* child = parent.FirstChildElement(name); child != nullptr;
+         child = child->NextSiblingElement(name)) {
+      ++count;
+    }
+    return count;
+  }
+
+  /// Before they are read, which takes a millisecond for a model, and more for each link of many.
+  void CheckNumbers(const XMLElement& element, const std::string& path) const {
+    const std::string name = element.Name();
+    const int num_models = CountOf("model", element) + CountOf("include", element);
+    const int num_frames = CountOf("frame", element), num_links = CountOf("link", element);
+    if (std::max(num_models, num_frames) > limits_.max_models || num_links > limits_.max_links) {
+      throw base::ConfigError(fmt::format(
+          "{}:{}: <{}> has {} models, {} frames and {} links, at most {}, {} and {} are loaded; "
+          "join what stands",
+          path, element.GetLineNum(), name, num_models, num_frames, num_links, limits_.max_models,
+          limits_.max_models, limits_.max_links));
+    }
+    for (const auto* child = element.FirstChildElement(); child != nullptr;
+         child = child->NextSiblingElement()) {
+      if (name == "sdf" || child->Name() == std::string("model")) CheckNumbers(*child, path);
+    }
+  }
+
   void CheckSize(const std::string& path, const SdfFile& file) const {
     if (file.num_elements <= limits_.max_elements) return;
-    throw base::ConfigError(
+    throw TooLarge(
         fmt::format("{}: more than {} elements, includes counted; split the world or replace many "
                     "bodies by a mesh",
                     path, limits_.max_elements));
@@ -133,6 +169,8 @@ class Walk {
       const std::string place = fmt::format("{}:{}", path, child->GetLineNum());
       try {
         if (!LeadsToModel(*child, place, path, file)) parent->DeleteChild(child);
+      } catch (const TooLarge&) {
+        throw;
       } catch (const base::ConfigError& error) {
         notes_->AddProblem(error.what());
         MakeEmptyModel(child);
@@ -167,6 +205,8 @@ class Walk {
       throw base::ConfigError(fmt::format(
           "{}: '{}' is {}, whose outermost element is <{}>{}; an <include> takes a model", place,
           uri, target, file.root, file.num_worlds > 0 ? " round a <world>" : ""));
+    } catch (const TooLarge&) {
+      throw;
     } catch (const base::ConfigError& error) {
       open_files_.resize(num_open);
       return Fail(target, error.what());
