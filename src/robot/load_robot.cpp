@@ -23,7 +23,7 @@ Robot LoadAnyRobot(const std::string& path) {
   if (ending == ".urdf" || ending == ".xacro") return LoadRobotFromUrdf(path);
   if (!IsProfile(path)) {
     throw base::ConfigError(fmt::format(
-        "{}: is no robot by its ending '{}'; wanted a profile (.yaml) or a URDF (.urdf), or a "
+        "{}: unknown file type '{}' for a robot; wanted a profile (.yaml), a URDF (.urdf) or a "
         "xacro file of one (.xacro)",
         file, ending));
   }

@@ -8,7 +8,6 @@
 #include <mutex>
 #include <vector>
 
-#include "hires/base/error.h"
 #include "hires/base/log.h"
 #include "hires/base/text.h"
 
@@ -42,7 +41,8 @@ class ConsoleCatcher : public console_bridge::OutputHandler {
 
 }  // namespace
 
-urdf::ModelInterfaceSharedPtr ParseUrdfQuietly(const std::string& xml, const std::string& where) {
+urdf::ModelInterfaceSharedPtr ParseUrdfQuietly(const std::string& xml, const std::string& where,
+                                               UrdfProblems* problems) {
   ConsoleCatcher console;
   urdf::ModelInterfaceSharedPtr model;
   std::string thrown;
@@ -54,8 +54,8 @@ urdf::ModelInterfaceSharedPtr ParseUrdfQuietly(const std::string& xml, const std
   if (!model || !console.errors().empty()) {
     std::vector<std::string> reasons = console.errors();
     if (!thrown.empty()) reasons.push_back(thrown);
-    throw base::ConfigError(fmt::format("{}: no valid URDF: {}; correct that element", where,
-                                        base::Join(reasons, "; ")));
+    problems->Fail(
+        0, fmt::format("no valid URDF: {}; correct that element", base::Join(reasons, "; ")));
   }
   for (const std::string& warning : console.warnings()) {
     base::Log(base::LogLevel::kWarn, fmt::format("urdf={} warning=\"{}\"", where, warning));

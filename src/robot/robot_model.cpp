@@ -178,10 +178,12 @@ std::vector<std::string> LinksBelow(const RobotModel& model, const std::string& 
 
 UrdfReading ReadUrdf(const std::string& xml, const std::string& where) {
   // The outline first: it names lines, and it refuses nesting so deep that urdfdom would crash.
-  const UrdfOutline outline = ReadUrdfOutline(xml, where);
-  const CleanUrdf clean = CleanedUrdf(xml, where);
-  UrdfReading reading =
-      ConvertUrdf(*ParseUrdfQuietly(clean.xml, where), outline, clean.shape_lines, where);
+  UrdfProblems problems(where);
+  const UrdfOutline outline = ReadUrdfOutline(xml, where, &problems);
+  const CleanUrdf clean = CleanedUrdf(xml, outline, where, &problems);
+  UrdfReading reading = ConvertUrdf(*ParseUrdfQuietly(clean.xml, where, &problems), outline,
+                                    clean.shape_lines, where, &problems);
+  problems.ThrowIfAny();
   reading.model.hash = HashOf(reading.model);
   return reading;
 }

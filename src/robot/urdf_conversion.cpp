@@ -8,6 +8,7 @@
 #include <filesystem>
 #include <map>
 #include <memory>
+#include <optional>
 #include <queue>
 
 #include "geometry/mesh_units.h"
@@ -21,7 +22,8 @@ namespace {
 
 using geometry::Pose3;
 
-constexpr double kMaxLength = 1e3;  // [m] of any offset or shape: beyond lies a slip of units
+constexpr double kMaxLength = 1e3;       // [m] of any offset or shape: beyond lies a slip of units
+constexpr std::size_t kMostFailed = 60;  // meshes; for each, names near to it are looked for
 constexpr geometry::DoubtfulSize kDoubtful{50.0, 200.0, 10.0};  // of a part of a robot
 
 Eigen::Vector3d ToVector(const urdf::Vector3& v) { return {v.x, v.y, v.z}; }
@@ -36,8 +38,12 @@ Pose3 ToPose(const urdf::Pose& pose) {
 class ModelBuilder {
  public:
   ModelBuilder(const urdf::ModelInterface& urdf, const UrdfOutline& outline,
-               const ShapeLines& shape_lines, const std::string& where)
-      : urdf_(urdf), outline_(outline), shape_lines_(shape_lines), where_(where) {}
+               const ShapeLines& shape_lines, const std::string& where, UrdfProblems* problems)
+      : urdf_(urdf),
+        outline_(outline),
+        shape_lines_(shape_lines),
+        where_(where),
+        problems_(*problems) {}
 
   UrdfReading Build() {
     model_.name = urdf_.getName();
@@ -48,13 +54,13 @@ class ModelBuilder {
   }
 
  private:
-  [[noreturn]] void FailLink(const std::string& link, const std::string& what) const {
-    throw base::ConfigError(fmt::format("{}: link '{}': {}; line {}", where_, link, what,
-                                        outline_.link_lines.at(link)));
+  void TellLink(const std::string& link, const std::string& what) {
+    problems_.Add(outline_.link_lines.at(link), fmt::format("link '{}': {}", link, what));
   }
-  [[noreturn]] void FailJoint(const std::string& joint, const std::string& what) const {
-    throw base::ConfigError(fmt::format("{}: joint '{}': {}; line {}", where_, joint, what,
-                                        outline_.joint_lines.at(joint)));
+  void TellJoint(const std::string& joint, const std::string& what) {
+    const auto line = outline_.joint_lines.find(joint);  // what joins loose links is in no line
+    problems_.Add(line == outline_.joint_lines.end() ? 0 : line->second,
+                  fmt::format("joint '{}': {}", joint, what));
   }
 
   /// Breadth first, children by name: the order does not depend on the file's.
@@ -81,20 +87,22 @@ class ModelBuilder {
     if (source.inertial) link.inertial = ToMass(*source.inertial);
     const auto friction = outline_.friction.find(source.name);
     for (const auto& collision : source.collision_array) {
-      link.collisions.push_back(ToCollision(source.name, *collision));
+      auto converted = ToCollision(source.name, *collision);
+      if (!converted) continue;
+      link.collisions.push_back(*std::move(converted));
       if (friction != outline_.friction.end()) link.collisions.back().friction = friction->second;
     }
     return link;
   }
 
-  Joint ToJoint(const urdf::Joint& source, int parent) const {
+  Joint ToJoint(const urdf::Joint& source, int parent) {
     Joint joint;
     joint.name = source.name;
     joint.type = ToType(source);
     joint.parent = parent;
     joint.X_PJ = ToPose(source.parent_to_joint_origin_transform);
     const std::string far = WhyBadPose(joint.X_PJ);
-    if (!far.empty()) FailJoint(joint.name, "its origin " + far);
+    if (!far.empty()) TellJoint(joint.name, "its origin " + far);
     if (joint.type == JointType::kFixed) return joint;
     joint.axis = ToAxis(source);
     if (source.limits) joint.limits = ToLimits(source);
@@ -106,7 +114,7 @@ class ModelBuilder {
     return joint;
   }
 
-  JointType ToType(const urdf::Joint& source) const {
+  JointType ToType(const urdf::Joint& source) {
     switch (source.type) {
       case urdf::Joint::FIXED:
         return JointType::kFixed;
@@ -117,32 +125,31 @@ class ModelBuilder {
       case urdf::Joint::PRISMATIC:
         return JointType::kPrismatic;
       default:
-        FailJoint(source.name,
+        TellJoint(source.name,
                   "floating and planar joints are not supported; the base moves by itself, so "
                   "make it fixed, or revolute, continuous or prismatic");
+        return JointType::kFixed;
     }
   }
 
-  Eigen::Vector3d ToAxis(const urdf::Joint& source) const {
+  Eigen::Vector3d ToAxis(const urdf::Joint& source) {
     const Eigen::Vector3d axis = ToVector(source.axis);
     const double length = axis.norm();
-    if (!(length > 1e-6) || !std::isfinite(length)) {
-      FailJoint(source.name,
-                fmt::format("its axis is ({}, {}, {}), wanted a direction such as 0 0 1", axis.x(),
-                            axis.y(), axis.z()));
-    }
-    return axis / length;
+    if (length > 1e-6 && std::isfinite(length)) return axis / length;
+    TellJoint(source.name, fmt::format("its axis is ({}, {}, {}), wanted a direction such as 0 0 1",
+                                       axis.x(), axis.y(), axis.z()));
+    return Eigen::Vector3d::UnitZ();
   }
 
-  JointLimits ToLimits(const urdf::Joint& source) const {
+  JointLimits ToLimits(const urdf::Joint& source) {
     const urdf::JointLimits& in = *source.limits;
     if (!(in.lower <= in.upper)) {
-      FailJoint(source.name,
+      TellJoint(source.name,
                 fmt::format("its lower limit {} is above its upper limit {}; swap them", in.lower,
                             in.upper));
     }
     if (!(in.velocity >= 0.0) || !(in.effort >= 0.0)) {
-      FailJoint(source.name, fmt::format("its limits are velocity {} and effort {}, wanted numbers "
+      TellJoint(source.name, fmt::format("its limits are velocity {} and effort {}, wanted numbers "
                                          "of at least 0",
                                          in.velocity, in.effort));
     }
@@ -166,24 +173,33 @@ class ModelBuilder {
     return {in.mass, X_LI.translation, 0.5 * (turned + turned.transpose())};
   }
 
-  geometry::Collision ToCollision(const std::string& link, const urdf::Collision& source) {
-    if (!source.geometry) FailLink(link, "a <collision> has no <geometry>; add a shape");
+  /// Nothing where it cannot be read, which is told.
+  std::optional<geometry::Collision> ToCollision(const std::string& link,
+                                                 const urdf::Collision& source) {
+    if (!source.geometry) {
+      TellLink(link, "a <collision> has no <geometry>; add a shape");
+      return std::nullopt;
+    }
     geometry::Collision collision;
     collision.name = source.name;
     collision.X_BS = ToPose(source.origin);
     const std::string far = WhyBadPose(collision.X_BS);
-    if (!far.empty()) FailLink(link, "a <collision>'s origin " + far);
-    collision.shape = ToShape(link, *source.geometry);
+    if (!far.empty()) TellLink(link, "a <collision>'s origin " + far);
+    auto shape = ToShape(link, *source.geometry);
+    if (!shape) return std::nullopt;
+    collision.shape = *std::move(shape);
     return collision;
   }
 
-  double Length(const std::string& link, const char* what, double value) const {
+  double Length(const std::string& link, const char* what, double value) {
     if (value > 0.0 && value <= kMaxLength) return value;
-    FailLink(link, fmt::format("a collision shape's {} is {} m, wanted above 0 and at most {}",
+    TellLink(link, fmt::format("a collision shape's {} is {} m, wanted above 0 and at most {}",
                                what, value, kMaxLength));
+    return 1.0;
   }
 
-  geometry::Shape ToShape(const std::string& link, const urdf::Geometry& source) {
+  /// Nothing for a mesh that could not be read.
+  std::optional<geometry::Shape> ToShape(const std::string& link, const urdf::Geometry& source) {
     switch (source.type) {
       case urdf::Geometry::BOX: {
         const urdf::Vector3& size = static_cast<const urdf::Box&>(source).dim;
@@ -198,8 +214,12 @@ class ModelBuilder {
       case urdf::Geometry::SPHERE:
         return geometry::Sphere{
             Length(link, "radius", static_cast<const urdf::Sphere&>(source).radius)};
-      default:
-        return meshes_.at(KeyOf(static_cast<const urdf::Mesh&>(source)));
+      default: {
+        const auto mesh = meshes_.find(KeyOf(static_cast<const urdf::Mesh&>(source)));
+        return mesh != meshes_.end() && mesh->second
+                   ? std::make_optional<geometry::Shape>(mesh->second)
+                   : std::nullopt;
+      }
     }
   }
 
@@ -211,26 +231,30 @@ class ModelBuilder {
 
   /// Of all links, so that all files which are missing or no meshes are told at once.
   void ReadMeshes() {
-    std::multimap<int, std::string> problems;  // by line
     const base::PackageFinder packages;
+    std::map<MeshKey, std::string> failed;
     for (const auto& [name, link] : urdf_.links_) {
       for (std::size_t i = 0; i < link->collision_array.size(); ++i) {
         const urdf::GeometrySharedPtr& geometry = link->collision_array[i]->geometry;
         if (!geometry || geometry->type != urdf::Geometry::MESH) continue;
-        try {
-          ReadMesh(static_cast<const urdf::Mesh&>(*geometry), packages);
-        } catch (const base::ConfigError& error) {
-          const int line = shape_lines_.at(name).at(i);
-          problems.emplace(line, fmt::format("link '{}': {}; line {}", name, error.what(), line));
+        const auto& mesh = static_cast<const urdf::Mesh&>(*geometry);
+        const int line = shape_lines_.at(name).at(i);
+        auto why = failed.find(KeyOf(mesh));
+        if (why == failed.end() && failed.size() >= kMostFailed) {
+          problems_.Add(line, fmt::format("link '{}': so many meshes cannot be read that this one "
+                                          "and later ones are not looked at",
+                                          name));
+          return;
         }
+        try {
+          if (why == failed.end()) ReadMesh(mesh, packages);
+        } catch (const base::ConfigError& error) {
+          why = failed.emplace(KeyOf(mesh), error.what()).first;
+        }
+        if (why != failed.end())
+          problems_.Add(line, fmt::format("link '{}': {}", name, why->second));
       }
     }
-    if (problems.empty()) return;
-    std::vector<std::string> texts;
-    for (const auto& [line, text] : problems) texts.push_back(text);
-    if (texts.size() == 1) throw base::ConfigError(where_ + ": " + texts.front());
-    throw base::ConfigError(fmt::format("{}: {} meshes cannot be read:\n  {}", where_, texts.size(),
-                                        base::Join(texts, "\n  ")));
   }
 
   void ReadMesh(const urdf::Mesh& source, const base::PackageFinder& packages) {
@@ -249,7 +273,7 @@ class ModelBuilder {
     by_uri = by_path;
   }
 
-  void CheckMimics() const {
+  void CheckMimics() {
     std::map<std::string, const Joint*> joints;
     for (const Link& link : model_.links) {
       if (link.joint) joints[link.joint->name] = &*link.joint;
@@ -258,12 +282,14 @@ class ModelBuilder {
     for (const auto& [name, joint] : joints) {
       if (joint->mimics.empty()) continue;
       if (joints.count(joint->mimics) == 0) {
-        FailJoint(name, "it mimics a joint that is not there: " +
+        if (outline_.joint_lines.count(joint->mimics) > 0) continue;  // left out as wrong itself
+        TellJoint(name, "it mimics a joint that is not there: " +
                             base::UnknownName("joint", joint->mimics, leaders));
+        continue;
       }
       const Joint& leader = *joints.at(joint->mimics);
       if (leader.type == JointType::kFixed || !leader.mimics.empty()) {
-        FailJoint(name, fmt::format("it mimics '{}', which is fixed or mimics another; name the "
+        TellJoint(name, fmt::format("it mimics '{}', which is fixed or mimics another; name the "
                                     "joint that leads",
                                     joint->mimics));
       }
@@ -276,6 +302,7 @@ class ModelBuilder {
   const UrdfOutline& outline_;
   const ShapeLines& shape_lines_;
   std::string where_;
+  UrdfProblems& problems_;
   RobotModel model_;
   std::map<MeshKey, MeshPtr> meshes_;  // by URI
   std::map<MeshKey, MeshPtr> files_;   // by path
@@ -285,8 +312,9 @@ class ModelBuilder {
 }  // namespace
 
 UrdfReading ConvertUrdf(const urdf::ModelInterface& urdf, const UrdfOutline& outline,
-                        const ShapeLines& shape_lines, const std::string& where) {
-  return ModelBuilder(urdf, outline, shape_lines, where).Build();
+                        const ShapeLines& shape_lines, const std::string& where,
+                        UrdfProblems* problems) {
+  return ModelBuilder(urdf, outline, shape_lines, where, problems).Build();
 }
 
 }  // namespace hires::robot

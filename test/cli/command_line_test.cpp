@@ -511,7 +511,7 @@ TEST(CommandLineTest, FilesOfAnotherKindAreToldWhatIsWanted) {
   ExpectRefused(with("--world", root + "/urdf/cart.urdf"),
                 {"cart.urdf: this is a robot (URDF)", "give it with --robot"});
   ExpectRefused(with("--robot", root + "/worlds/workshop.world"),
-                {"wanted a profile (.yaml) or a URDF"});
+                {"wanted a profile (.yaml), a URDF"});
   ExpectRefused(with("--robot", root + "/worlds/objects.yaml"), {"is no robot's profile"});
 }
 

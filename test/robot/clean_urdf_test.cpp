@@ -161,15 +161,17 @@ TEST(CleanUrdfTest, ShapesThatNobodyKnowsAreToldAllAtOnce) {
         "<collision><geometry><torus/></geometry></collision></link></robot>",
         "r.urdf");
   });
-  EXPECT_THAT(error, AllOf(HasSubstr("link 'a': <cone> in line 2"), HasSubstr("<torus> in line 3"),
-                           HasSubstr("capsule or mesh")));
+  EXPECT_THAT(error,
+              AllOf(HasSubstr("link 'a': the collision shape <cone>"), HasSubstr("; line 2"),
+                    HasSubstr("<torus>"), HasSubstr("; line 3"), HasSubstr("capsule or mesh")));
 }
 
 TEST(CleanUrdfTest, LinesOfShapesAreThoseOfTheFile) {
+  UrdfProblems problems("r.urdf");
   const CleanUrdf clean = CleanedUrdf(
       "<robot name='r'>\n<link name='a'>\n<collision><geometry>\n<capsule radius='1' length='2'/>"
       "</geometry></collision>\n<collision/>\n</link></robot>",
-      "r.urdf");
+      {}, "r.urdf", &problems);
   EXPECT_THAT(clean.shape_lines.at("a"), ::testing::ElementsAre(4, 4, 4, 5));
 }
 

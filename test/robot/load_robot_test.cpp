@@ -58,8 +58,8 @@ TEST(LoadAnyRobotTest, AFileOfAnotherKindIsToldWhatIsWanted) {
     return hires::test_support::ConfigErrorOf([&] { LoadAnyRobot(path); });
   };
   EXPECT_THAT(error_of(kRoot + "/worlds/workshop.world"),
-              testing::HasSubstr("workshop.world: is no robot by its ending '.world'; wanted a "
-                                 "profile (.yaml) or a URDF (.urdf)"));
+              testing::HasSubstr("workshop.world: unknown file type '.world' for a robot; wanted a "
+                                 "profile (.yaml), a URDF (.urdf) or a xacro file"));
   EXPECT_THAT(error_of(kRoot + "/worlds/objects.yaml"),
               testing::HasSubstr("objects.yaml: is no robot's profile, which begins with the name "
                                  "of its URDF"));

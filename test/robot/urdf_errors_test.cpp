@@ -161,7 +161,54 @@ TEST(UrdfFile, DeepNestingIsRefused) {
   std::string xml = "<robot name=\"r\"><link name=\"a\"/>";
   for (int i = 0; i < 100000; ++i) xml += "<x>";
   EXPECT_THAT([&] { ParseRobotModel(xml, "x.urdf"); },
-              ThrowsMessage<base::ConfigError>(HasSubstr("no valid XML")));
+              ThrowsMessage<base::ConfigError>(HasSubstr("nest too deep")));
+}
+
+TEST(UrdfFile, TooManyLinksAreRefusedByNumber) {
+  std::string xml = "<robot name='r'><link name='base'/>";
+  for (int i = 0; i < 3000; ++i) {
+    xml += "<link name='l" + std::to_string(i) + "'/><joint name='j" + std::to_string(i) +
+           "' type='fixed'><parent link='base'/><child link='l" + std::to_string(i) + "'/></joint>";
+  }
+  EXPECT_THAT([&] { ParseRobotModel(xml + "</robot>", "x.urdf"); },
+              ThrowsMessage<base::ConfigError>(AllOf(HasSubstr("3001 links"), HasSubstr("2000"))));
+}
+
+TEST(UrdfFile, EntitiesAreNamed) {
+  EXPECT_THAT(
+      [] {
+        ParseRobotModel(
+            "<!DOCTYPE r [<!ENTITY w '0.4'>]>\n<robot name='r'><link name='a'>\n"
+            "<collision><geometry><sphere radius='&w;'/></geometry></collision></link>"
+            "</robot>",
+            "x.urdf");
+      },
+      ThrowsMessage<base::ConfigError>(
+          AllOf(HasSubstr("x.urdf:3: uses entities"), HasSubstr("&w;"))));
+}
+
+TEST(UrdfFile, AllThatIsWrongIsToldAtOnceInTheOrderOfLines) {
+  const std::string xml =
+      "<robot name='r'>\n<link name='a'/>\n<link name='a'/>\n"
+      "<joint name='j' type='hinge'><parent link='a'/><child link='b'/></joint>\n"
+      "<joint name='k' type='fixed'><parent link='a'/><child link='c'/></joint>\n"
+      "<link name='b'><collision><geometry><box size='1 1 -1'/></geometry></collision>\n"
+      "<collision><geometry><mesh filename='gone.stl'/></geometry></collision></link></robot>";
+  try {
+    ParseRobotModel(xml, "x.urdf");
+    ADD_FAILURE() << "was accepted";
+  } catch (const base::ConfigError& error) {
+    const std::string what = error.what();
+    std::size_t at = 0;
+    for (const char* wanted :
+         {"x.urdf: 5 things are wrong", "'a' is there twice", "its type is 'hinge'",
+          "child link 'c' is unknown", "height is -1", "gone.stl"}) {
+      const std::size_t found = what.find(wanted, at);
+      EXPECT_NE(found, std::string::npos) << wanted << " in\n" << what;
+      at = found == std::string::npos ? at : found;
+    }
+    EXPECT_THAT(what, ::testing::Not(HasSubstr("hang on no joint")));
+  }
 }
 
 TEST(UrdfFile, MissingFileIsNamed) {

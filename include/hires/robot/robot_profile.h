@@ -110,10 +110,11 @@ Robot LoadRobot(const std::string& profile_path);
 
 /// A robot from a bare URDF, with what can be derived: base_link is the root; the tray is the link
 /// whose name contains "tray" (case ignored) and has a collision shape, the largest one seen from
-/// above where several do, and objects stand on the middle of its top; without such a link the
-/// robot carries nothing. Where shapes reach below the root, the lowest one is on the floor (see
-/// Robot::base_height). The footprint is the convex hull of the collision shapes seen from above,
-/// up to 2 m over the floor, joints at rest, padded as RobotProfile's default.
+/// above where several do, and objects stand on the middle of its top, or of its largest free part
+/// where something of the robot takes the middle; without such a link the robot carries nothing.
+/// Where shapes reach below the root, the lowest one is on the floor (see Robot::base_height). The
+/// footprint is the convex hull of the collision shapes seen from above, up to 2 m over the floor,
+/// joints at rest, padded as RobotProfile's default.
 /// Motion sets and base controller are those of RobotProfile's defaults (PR2); how it drives, and
 /// how sharply a car-like one turns, is guessed from its wheels, and logged.
 /// @throws base::ConfigError as LoadRobotModel, and if there is no collision shape in that band.

@@ -12,9 +12,7 @@
 #include <sstream>
 
 #include "hires/base/check.h"
-#include "hires/base/error.h"
 #include "hires/base/log.h"
-#include "hires/base/spelling.h"
 #include "hires/base/text.h"
 #include "hires/geometry/inertia.h"
 #include "hires/geometry/pose.h"
@@ -115,7 +113,9 @@ struct Told {
 
 class UrdfCleaner {
  public:
-  UrdfCleaner(const std::string& xml, const std::string& where) : where_(where) {
+  UrdfCleaner(const std::string& xml, const UrdfOutline& outline, const std::string& where,
+              UrdfProblems* problems)
+      : where_(where), outline_(outline), problems_(*problems) {
     document_.Parse(xml.data(), xml.size());
     robot_ = document_.FirstChildElement("robot");
     HIRES_CHECK(!document_.Error() && robot_ != nullptr, "the outline was read before");
@@ -124,6 +124,9 @@ class UrdfCleaner {
   CleanUrdf Clean() {
     robot_->DeleteAttribute("version");  // newer ones are refused, whatever stands in them
     DeleteAllBut({"link", "joint"}, robot_);
+    DeleteThose("link", outline_.useless_links);
+    DeleteThose("joint", outline_.useless_joints);
+    JoinRoots();
     for (XMLElement* link = robot_->FirstChildElement("link"); link != nullptr;
          link = link->NextSiblingElement("link")) {
       CleanLink(link);
@@ -132,7 +135,6 @@ class UrdfCleaner {
          joint = joint->NextSiblingElement("joint")) {
       CleanJoint(joint);
     }
-    FailUnknownShapes();
     Tell();
     tinyxml2::XMLPrinter printer(nullptr, true);
     document_.Print(&printer);
@@ -149,24 +151,106 @@ class UrdfCleaner {
     }
   }
 
+  /// @param numbers  which of that name
+  void DeleteThose(const char* name, const std::set<int>& numbers) {
+    int number = 0;
+    for (XMLElement* child = robot_->FirstChildElement(name); child != nullptr; ++number) {
+      XMLElement* next = child->NextSiblingElement(name);
+      if (numbers.count(number) > 0) robot_->DeleteChild(child);
+      child = next;
+    }
+  }
+
+  void JoinRoots() {
+    for (std::size_t i = 1; i < outline_.roots.size(); ++i) {
+      XMLElement* joint = robot_->InsertNewChildElement("joint");
+      joint->SetAttribute("name", fmt::format("hires_loose_{}", i).c_str());
+      joint->SetAttribute("type", "fixed");
+      joint->InsertNewChildElement("parent")->SetAttribute("link", outline_.roots[0].c_str());
+      joint->InsertNewChildElement("child")->SetAttribute("link", outline_.roots[i].c_str());
+    }
+  }
+
+  /// Whether an attribute that is there holds `count` numbers; it is told and replaced if not.
+  void CheckNumbers(XMLElement* element, const char* attribute, std::size_t count,
+                    const std::string& owner, const char* instead) {
+    const char* text = element == nullptr ? nullptr : element->Attribute(attribute);
+    if (text == nullptr || NumbersIn(text, count)) return;
+    problems_.Add(element->GetLineNum(),
+                  fmt::format("no valid URDF: {}: {} of its <{}> is '{}', wanted {}", owner,
+                              attribute, element->Name(), text,
+                              count == 1 ? "a number" : fmt::format("{} numbers", count)));
+    element->SetAttribute(attribute, instead);
+  }
+
+  /// The same of one that must be there.
+  void RequireNumbers(XMLElement* element, const char* attribute, std::size_t count,
+                      const std::string& owner, const char* instead) {
+    if (element->Attribute(attribute) != nullptr)
+      return CheckNumbers(element, attribute, count, owner, instead);
+    problems_.Add(element->GetLineNum(),
+                  fmt::format("no valid URDF: {}: its <{}> has no {}; add it", owner,
+                              element->Name(), attribute));
+    element->SetAttribute(attribute, instead);
+  }
+
+  void CheckOrigin(XMLElement* element, const std::string& owner) {
+    XMLElement* origin = element->FirstChildElement("origin");
+    CheckNumbers(origin, "xyz", 3, owner, "0 0 0");
+    CheckNumbers(origin, "rpy", 3, owner, "0 0 0");
+  }
+
+  /// @return false: of no kind that is known.
+  bool CheckShape(XMLElement* shape, const std::string& owner) {
+    const std::string kind = shape->Name();
+    if (kind == "box") {
+      RequireNumbers(shape, "size", 3, owner, "1 1 1");
+    } else if (kind == "cylinder") {
+      RequireNumbers(shape, "radius", 1, owner, "1");
+      RequireNumbers(shape, "length", 1, owner, "1");
+    } else if (kind == "sphere") {
+      RequireNumbers(shape, "radius", 1, owner, "1");
+    } else if (kind == "mesh") {
+      CheckNumbers(shape, "scale", 3, owner, "1 1 1");
+      if (shape->Attribute("filename") != nullptr) return true;
+      problems_.Add(shape->GetLineNum(),
+                    fmt::format("no valid URDF: {}: its <mesh> has no filename; add it", owner));
+      Stand(shape);
+    } else {
+      return false;
+    }
+    return true;
+  }
+
+  /// Puts a box in the place of a shape that cannot be read.
+  static void Stand(XMLElement* shape) {
+    shape->SetName("box");
+    shape->SetAttribute("size", "1 1 1");
+  }
+
   void CleanLink(XMLElement* link) {
     DeleteAllBut({"inertial", "collision"}, link);
     if (XMLElement* inertial = link->FirstChildElement("inertial")) CheckInertial(link, inertial);
     std::vector<int>& lines = clean_.shape_lines[NameOf(*link)];
+    const std::string owner = fmt::format("link '{}'", NameOf(*link));
     for (XMLElement* collision = link->FirstChildElement("collision"); collision != nullptr;
          collision = collision->NextSiblingElement("collision")) {
-      const XMLElement* geometry = collision->FirstChildElement("geometry");
-      const XMLElement* shape = geometry == nullptr ? nullptr : geometry->FirstChildElement();
+      CheckOrigin(collision, owner);
+      XMLElement* geometry = collision->FirstChildElement("geometry");
+      XMLElement* shape = geometry == nullptr ? nullptr : geometry->FirstChildElement();
       const int line = (shape == nullptr ? collision : shape)->GetLineNum();
       lines.push_back(line);
       if (shape == nullptr) continue;
       const std::string kind = shape->Name();
       if (kind == "capsule") {
-        collision = SplitCapsule(link, collision);
-        lines.resize(lines.size() + 2, line);
-      } else if (kind != "box" && kind != "cylinder" && kind != "sphere" && kind != "mesh") {
-        unknown_shapes_.push_back(
-            fmt::format("link '{}': <{}> in line {}", NameOf(*link), kind, line));
+        XMLElement* last = SplitCapsule(link, collision);
+        if (last != collision) lines.resize(lines.size() + 2, line);
+        collision = last;
+      } else if (!CheckShape(shape, owner)) {
+        problems_.Add(line, fmt::format("no valid URDF: {}: the collision shape <{}> is not "
+                                        "supported; use box, cylinder, sphere, capsule or mesh",
+                                        owner, kind));
+        Stand(shape);
       }
     }
   }
@@ -178,22 +262,24 @@ class UrdfCleaner {
     if (doubt.is_useless) link->DeleteChild(inertial);
   }
 
-  [[noreturn]] void FailCapsule(const XMLElement& link, const XMLElement& capsule) const {
-    throw base::ConfigError(fmt::format(
-        "{}: link '{}': a <capsule> has no radius above 0 and length of at least 0, or its "
-        "collision no <origin> of numbers; wanted <capsule radius=\"0.1\" length=\"0.5\"/>; line "
-        "{}",
-        where_, NameOf(link), capsule.GetLineNum()));
+  void TellCapsule(const XMLElement& link, XMLElement* capsule) {
+    problems_.Add(capsule->GetLineNum(),
+                  fmt::format("link '{}': a <capsule> has no radius above 0 and length of at least "
+                              "0; wanted <capsule radius=\"0.1\" length=\"0.5\"/>",
+                              NameOf(link)));
+    Stand(capsule);
   }
 
-  /// @return the last of the three that take its place.
+  /// @return the last of the three that take its place, or itself where it is none.
   XMLElement* SplitCapsule(XMLElement* link, XMLElement* collision) {
     XMLElement* geometry = collision->FirstChildElement("geometry");
-    const XMLElement* capsule = geometry->FirstChildElement("capsule");
+    XMLElement* capsule = geometry->FirstChildElement("capsule");
     const auto radius = NumberIn(capsule, "radius"), length = NumberIn(capsule, "length");
     const auto X_LS = OriginOf(*collision);
-    if (!radius || !(*radius > 0.0) || !length || *length < 0.0 || !X_LS)
-      FailCapsule(*link, *capsule);
+    if (!radius || !(*radius > 0.0) || !length || *length < 0.0 || !X_LS) {
+      TellCapsule(*link, capsule);
+      return collision;
+    }
     const std::string name = NameOf(*collision);
     const std::string text = fmt::format("{}", *radius);
     // A ball has both ends where there is nothing between them.
@@ -234,8 +320,24 @@ class UrdfCleaner {
 
   void CleanJoint(XMLElement* joint) {
     DeleteAllBut({"origin", "axis", "parent", "child", "limit", "mimic"}, joint);
+    const std::string owner = fmt::format("joint '{}'", NameOf(*joint));
     const char* type = joint->Attribute("type");
     const std::string kind = type == nullptr ? "" : type;
+    CheckOrigin(joint, owner);
+    CheckNumbers(joint->FirstChildElement("axis"), "xyz", 3, owner, "0 0 1");
+    for (const char* key : {"lower", "upper", "effort", "velocity"})
+      CheckNumbers(joint->FirstChildElement("limit"), key, 1, owner, "0");
+    for (const char* key : {"multiplier", "offset"})
+      CheckNumbers(joint->FirstChildElement("mimic"), key, 1, owner, "1");
+    static const std::set<std::string> known{"fixed",      "revolute", "prismatic",
+                                             "continuous", "floating", "planar"};
+    if (known.count(kind) == 0) {
+      problems_.Add(joint->GetLineNum(),
+                    fmt::format("no valid URDF: {}: its type is '{}', wanted fixed, revolute, "
+                                "continuous or prismatic",
+                                owner, kind));
+      joint->SetAttribute("type", "fixed");
+    }
     if (kind == "floating" || kind == "planar") {
       loose_.Add(*joint, NameOf(*joint), kind);
       joint->SetAttribute("type", "fixed");
@@ -255,17 +357,6 @@ class UrdfCleaner {
     }
   }
 
-  void FailUnknownShapes() const {
-    if (unknown_shapes_.empty()) return;
-    throw base::ConfigError(fmt::format(
-        "{}: no valid URDF: {} not supported: {}; use box, cylinder, sphere, capsule or mesh",
-        where_,
-        unknown_shapes_.size() == 1
-            ? "a collision shape is"
-            : base::Counted(unknown_shapes_.size(), "collision shape") + " are",
-        base::Join(unknown_shapes_, "; ")));
-  }
-
   void Tell() const {
     inertials_.Tell(where_, "impossible_inertia",
                     "no body has such masses or inertias; nothing here uses them");
@@ -275,17 +366,19 @@ class UrdfCleaner {
   }
 
   std::string where_;
+  const UrdfOutline& outline_;
+  UrdfProblems& problems_;
   tinyxml2::XMLDocument document_;
   XMLElement* robot_{nullptr};
   CleanUrdf clean_;
   Told inertials_, loose_, unlimited_;
-  std::vector<std::string> unknown_shapes_;
 };
 
 }  // namespace
 
-CleanUrdf CleanedUrdf(const std::string& xml, const std::string& where) {
-  return UrdfCleaner(xml, where).Clean();
+CleanUrdf CleanedUrdf(const std::string& xml, const UrdfOutline& outline, const std::string& where,
+                      UrdfProblems* problems) {
+  return UrdfCleaner(xml, outline, where, problems).Clean();
 }
 
 }  // namespace hires::robot

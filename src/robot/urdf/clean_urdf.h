@@ -4,6 +4,9 @@
 #include <string>
 #include <vector>
 
+#include "robot/urdf/urdf_problems.h"
+#include "robot/urdf_outline.h"
+
 namespace hires::robot {
 
 /// A URDF as the parser gets it.
@@ -19,8 +22,11 @@ struct CleanUrdf {
 /// need some are held at 0, and efforts and velocities that are not said are 0. A capsule
 /// (`<capsule radius length>`, the length that of its straight part) becomes a cylinder and two
 /// spheres. Logs a warning for each kind of what is wrong, with all names, lines and number.
-/// @param xml  a URDF that ReadUrdfOutline accepts.  @param where  the file, for messages.
-/// @throws base::ConfigError for collision shapes of other kinds, all at once with their lines.
-CleanUrdf CleanedUrdf(const std::string& xml, const std::string& where);
+/// What is wrong (numbers that are none, unknown shapes and kinds of joints) goes to `problems`,
+/// and something that can be read takes its place, so that the rest is judged, too.
+/// @param xml  a URDF that ReadUrdfOutline can read, and `outline` what it says.
+/// @param where  the file, for messages.
+CleanUrdf CleanedUrdf(const std::string& xml, const UrdfOutline& outline, const std::string& where,
+                      UrdfProblems* problems);
 
 }  // namespace hires::robot

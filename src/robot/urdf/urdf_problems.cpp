@@ -1,0 +1,46 @@
+#include "robot/urdf/urdf_problems.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <vector>
+
+#include "hires/base/error.h"
+#include "hires/base/short_text.h"
+#include "hires/base/text.h"
+
+namespace hires::robot {
+namespace {
+
+constexpr std::size_t kMostListed = 50;
+
+}  // namespace
+
+void UrdfProblems::Add(int line, const std::string& whole) {
+  const std::string what = base::Shortened(whole);  // a name may be a file long
+  const auto [begin, end] = problems_.equal_range(line);
+  if (std::none_of(begin, end, [&](const auto& known) { return known.second == what; }))
+    problems_.emplace(line, what);
+}
+
+void UrdfProblems::ThrowIfAny() const {
+  if (problems_.empty()) return;
+  std::vector<std::string> listed;
+  for (const auto& [line, what] : problems_) {
+    if (listed.size() == kMostListed) break;
+    listed.push_back(line > 0 ? fmt::format("{}; line {}", what, line) : what);
+  }
+  if (listed.size() == 1) throw base::ConfigError(where_ + ": " + listed.front());
+  if (problems_.size() > kMostListed)
+    listed.push_back(fmt::format("and {} more", problems_.size() - kMostListed));
+  throw base::ConfigError(fmt::format("{}: {} things are wrong:\n  {}", where_, problems_.size(),
+                                      base::Join(listed, "\n  ")));
+}
+
+void UrdfProblems::Fail(int line, const std::string& what) {
+  Add(line, what);
+  ThrowIfAny();
+  throw base::ConfigError(where_ + ": " + what);
+}
+
+}  // namespace hires::robot
