@@ -19,6 +19,7 @@ namespace {
 constexpr double kFarthest = 1000.0;  // [m] of an area, as in an SDF world
 constexpr int kDeepest = 16;          // maps and lists in one another
 constexpr int kMostNodes = 200'000;   // an alias may stand for many
+constexpr std::size_t kMostAreas = 2000, kMostErrors = 50;
 
 int LineOf(const YAML::Node& node) { return node.Mark().line + 1; }
 
@@ -67,6 +68,10 @@ class AreaReader {
       RefuseMap(document);
       Walk(document, "", 0);
     }
+    for (const auto& [what, places] : noted_) {
+      base::Log(base::LogLevel::kWarn,
+                fmt::format("{}:{}: {} ({} in all)", path_, places.first, what, places.count));
+    }
     if (areas_.empty() && errors_.empty()) {
       errors_.push_back(fmt::format(
           "{}: has no goal; wanted name: [x, y, yaw] [m, m, rad], or poses with position and "
@@ -74,14 +79,15 @@ class AreaReader {
           path_));
     }
     if (errors_.size() > 1) {
-      throw base::ConfigError(fmt::format("{}: {} things are wrong:\n  {}", path_, errors_.size(),
-                                          base::Join(errors_, "\n  ")));
+      const std::size_t count = errors_.size();
+      if (count > kMostErrors) {
+        errors_.resize(kMostErrors);
+        errors_.push_back(fmt::format("and {} more", count - kMostErrors));
+      }
+      throw base::ConfigError(
+          fmt::format("{}: {} things are wrong:\n  {}", path_, count, base::Join(errors_, "\n  ")));
     }
     if (!errors_.empty()) throw base::ConfigError(errors_[0]);
-    for (const auto& [what, places] : noted_) {
-      base::Log(base::LogLevel::kWarn,
-                fmt::format("{}:{}: {} ({} in all)", path_, places.first, what, places.count));
-    }
     return std::move(areas_);
   }
 
@@ -174,6 +180,11 @@ class AreaReader {
     if (!is_new) {
       Fail(line, fmt::format("'{}' is there twice, first in line {} (case is ignored)", name,
                              known->second));
+    }
+    if (lines_.size() > kMostAreas) {
+      throw base::ConfigError(
+          fmt::format("{}:{}: has more than {} goals; leave those out that are no question", path_,
+                      line, kMostAreas));
     }
     const auto pose = node.IsMap() ? PoseOfMap(node) : PoseOfList(node);
     if (pose) areas_.push_back({name, *pose});  // else an error says why

@@ -7,6 +7,7 @@
 #include <memory>
 #include <thread>
 
+#include "base/trimmed.h"
 #include "hires/base/error.h"
 #include "hires/base/text.h"
 #include "hires/world/object_catalogue.h"
@@ -15,12 +16,6 @@
 namespace hires::python {
 namespace {
 
-std::string Trimmed(const std::string& text) {
-  const auto begin = text.find_first_not_of(" \t");
-  if (begin == std::string::npos) return "";
-  return text.substr(begin, text.find_last_not_of(" \t") - begin + 1);
-}
-
 /// What no name of an object has, and every file of one.
 bool IsFile(const std::string& object) {
   return object.find('/') != std::string::npos || object.find('.') != std::string::npos;
@@ -28,17 +23,17 @@ bool IsFile(const std::string& object) {
 
 base::Atom ParseFact(const std::string& text) {
   const std::size_t open = text.find('('), close = text.find(')');
-  const std::string predicate = Trimmed(text.substr(0, open));
+  const std::string predicate = base::Trimmed(text.substr(0, open));
   const bool is_fact = !predicate.empty() && open != std::string::npos &&
                        close != std::string::npos && open < close &&
-                       Trimmed(text.substr(close + 1)).empty();
+                       base::Trimmed(text.substr(close + 1)).empty();
   if (!is_fact) {
     throw base::ConfigError(
         fmt::format("facts: '{}' is no fact; write it as 'Holding(rightArm1, mug1)'", text));
   }
   base::Atom atom{predicate, {}};
   for (const std::string& name : base::Split(text.substr(open + 1, close - open - 1), ',')) {
-    atom.arguments.push_back(Trimmed(name));
+    atom.arguments.push_back(base::Trimmed(name));
   }
   return atom;
 }

@@ -121,5 +121,10 @@ TEST(RequireObjectsTest, WhatAnActionIsAboutMustBeSomewhere) {
   }
 }
 
+TEST(AreaFilesOfTest, FilesAreToldFromAreas) {
+  EXPECT_EQ(AreaFilesOf({"dock:1,2,0", "goals.yaml", "a/points.yml", "b:0,0,1.5"}),
+            (std::vector<std::string>{"goals.yaml", "a/points.yml"}));
+}
+
 }  // namespace
 }  // namespace hires::cli::imagine_start_test

@@ -7,6 +7,7 @@
 #include "hires/perception/picture_scene.h"
 #include "hires/perception/pinhole_camera.h"
 #include "reports/film/film_colours.h"
+#include "reports/film/label_layout.h"
 #include "reports/film/picture_text.h"
 
 namespace hires::reports {
@@ -58,19 +59,36 @@ cv::Scalar ScalarOf(const perception::Colour& colour) {
   return cv::Scalar(colour[0], colour[1], colour[2]);
 }
 
-void DrawPlace(const PinholeCamera& camera, const MarkedPlace& place, Picture* picture) {
-  cv::Mat pixels(picture->height, picture->width, CV_8UC3, picture->pixels.data());
-  const Vector2d heading(std::cos(place.X_MP.yaw), std::sin(place.X_MP.yaw));
-  const cv::Point from = PixelOf(camera, place.X_MP.position());
-  const cv::Point far = PixelOf(camera, place.X_MP.position() + kArrow * heading);
+void DrawArrow(const PinholeCamera& camera, const geometry::Pose2& X_MP, cv::Mat* pixels) {
+  const Vector2d heading(std::cos(X_MP.yaw), std::sin(X_MP.yaw));
+  const cv::Point from = PixelOf(camera, X_MP.position());
+  const cv::Point far = PixelOf(camera, X_MP.position() + kArrow * heading);
   const double length = std::max<double>(kSmallestArrow, cv::norm(far - from));
   const cv::Point to(from.x + static_cast<int>(std::lround(length * heading.x())),
                      from.y - static_cast<int>(std::lround(length * heading.y())));
-  cv::circle(pixels, from, 4, ScalarOf(kAlarm), cv::FILLED, cv::LINE_AA);
-  cv::arrowedLine(pixels, from, to, ScalarOf(kAlarm), 2, cv::LINE_AA, 0, 0.3);
-  const int column = std::clamp(from.x + 8, 0, std::max(0, picture->width - WidthOf(place.name)));
-  WriteLine(place.name, column, std::clamp(from.y, 0, std::max(0, picture->height - kTextHeight)),
-            picture->width, kInk, picture);
+  cv::circle(*pixels, from, 4, ScalarOf(kAlarm), cv::FILLED, cv::LINE_AA);
+  cv::arrowedLine(*pixels, from, to, ScalarOf(kAlarm), 2, cv::LINE_AA, 0, 0.3);
+}
+
+/// Names come last, so that no arrow lies on one.
+void DrawPlaces(const PinholeCamera& camera, const std::vector<MarkedPlace>& places,
+                Picture* picture) {
+  cv::Mat pixels(picture->height, picture->width, CV_8UC3, picture->pixels.data());
+  std::vector<Labelled> points;
+  for (const MarkedPlace& place : places) {
+    DrawArrow(camera, place.X_MP, &pixels);
+    const cv::Point at = PixelOf(camera, place.X_MP.position());
+    points.push_back({at.x, at.y, WidthOf(place.name)});
+  }
+  const std::vector<LabelPlace> labels = PlaceLabels(points, picture->width, picture->height);
+  for (std::size_t i = 0; i < places.size(); ++i) {
+    const int middle = labels[i].row + kTextHeight / 2;
+    if (std::abs(middle - points[i].y) > kTextHeight) {  // a line says whose name it is
+      const int end = labels[i].column + (labels[i].column < points[i].x ? points[i].width : 0);
+      cv::line(pixels, {points[i].x, points[i].y}, {end, middle}, ScalarOf(kAlarm), 1, cv::LINE_AA);
+    }
+    WriteLine(places[i].name, labels[i].column, labels[i].row, picture->width, kInk, picture);
+  }
 }
 
 }  // namespace
@@ -108,7 +126,7 @@ Picture TopView(const simulation::Scene& scene, const std::vector<MarkedPlace>& 
     cv::line(pixels, PixelOf(camera, way[i - 1]), PixelOf(camera, way[i]), ScalarOf(kTrace), 2,
              cv::LINE_AA);
   }
-  for (const MarkedPlace& place : places) DrawPlace(camera, place, &picture);
+  DrawPlaces(camera, places, &picture);
   return picture;
 }
 

@@ -9,6 +9,7 @@
 #include "cli/verbs/imagine/imagine_start.h"
 #include "hires/base/error.h"
 #include "hires/base/log.h"
+#include "hires/base/spelling.h"
 #include "hires/base/text.h"
 #include "hires/imagination/client_config.h"
 #include "hires/imagination/imagination_setup.h"
@@ -172,13 +173,14 @@ imagination::SetupConfig ConfigOf(const FileDoctorOptions& options,
   imagination::SetupConfig config = imagination::ReadSetupConfig(client.scene);
   imagination::OverridePaths(options.world, options.robot, std::nullopt, std::nullopt, &config);
   if (options.world.empty()) config.map = options.map;
-  config.areas = ReadAreas(options.areas);
   return config;
 }
 
 /// Each file by itself, so that what is wrong with one hides nothing of the others.
+/// @param[in,out] config  gets the areas.
 /// @return whether all could be read.
-bool LookAtFiles(const FileDoctorOptions& options, const std::string& robot, const Say& say) {
+bool LookAtFiles(const FileDoctorOptions& options, const Say& say,
+                 imagination::SetupConfig* config) {
   bool is_whole = true;
   std::vector<std::string> notes;
   const auto tell = [&] {
@@ -191,8 +193,14 @@ bool LookAtFiles(const FileDoctorOptions& options, const std::string& robot, con
   if (!options.map.empty())
     is_whole = Try(say, [&] { return FindingOfMap(options.map, &notes); }) && is_whole;
   tell();
-  is_whole = Try(say, [&] { return FindingOfRobot(robot, &notes); }) && is_whole;
+  is_whole = Try(say, [&] { return FindingOfRobot(config->robot, &notes); }) && is_whole;
   tell();
+  const auto read_areas = [&] {
+    config->areas = ReadAreas(options.areas);
+    return Finding{FindingLevel::kOk,
+                   "--area: " + base::Counted(config->areas.size(), "area") + " to stand at"};
+  };
+  if (!options.areas.empty()) is_whole = Try(say, read_areas) && is_whole;
   return is_whole;
 }
 
@@ -203,9 +211,9 @@ void ExamineFiles(const FileDoctorOptions& options, const std::string& package_f
   Told told(say_all);
   const Say say = [&](const Finding& finding) { told(finding); };
   if (!options.png.empty()) reports::RequireFolderOf(options.png);
-  const imagination::SetupConfig config = ConfigOf(options, package_folder);
+  imagination::SetupConfig config = ConfigOf(options, package_folder);
   const WarningsAsFindings warnings(say);
-  if (!LookAtFiles(options, config.robot, say)) return;
+  if (!LookAtFiles(options, say, &config)) return;
   std::optional<ImaginationSetup> setup;
   std::vector<reports::MarkedPlace> places;
   const bool is_set_up = Try(say, [&] {

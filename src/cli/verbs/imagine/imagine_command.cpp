@@ -233,6 +233,8 @@ ReportOrigin OriginOf(const ImagineOptions& options, const ImagineQuery& query, 
                    {"uncertainty", has_uncertainty ? files.uncertainty : ""},
                    {"uncertainty over it", files.uncertainty_over}};
   for (const std::string& object : files.extra_objects) origin.inputs.push_back({"object", object});
+  for (const std::string& file : AreaFilesOf(options.areas))
+    origin.inputs.push_back({"areas", file});
   const imagination::ImaginationSetup& setup = scene->setup();
   origin.hashes = {{"world", base::HexOf(setup.world_hash)},
                    {"robot", base::HexOf(setup.robot_hash)},

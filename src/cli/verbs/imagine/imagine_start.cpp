@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <iterator>
 #include <set>
 
 #include "hires/base/error.h"
@@ -181,6 +182,12 @@ std::vector<imagination::NamedArea> ReadAreas(const std::vector<std::string>& te
     areas.insert(areas.end(), more.begin(), more.end());
   }
   return areas;
+}
+
+std::vector<std::string> AreaFilesOf(const std::vector<std::string>& texts) {
+  std::vector<std::string> files;
+  std::copy_if(texts.begin(), texts.end(), std::back_inserter(files), IsAreaFile);
+  return files;
 }
 
 void AddAreaOption(CLI::App* app, std::vector<std::string>* areas) {

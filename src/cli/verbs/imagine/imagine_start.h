@@ -43,6 +43,9 @@ ImagineStart ReadStart(const StartOptions& options, const std::string& action,
 /// @throws base::ConfigError saying what is wanted.
 std::vector<imagination::NamedArea> ReadAreas(const std::vector<std::string>& texts);
 
+/// Which of these are files.
+std::vector<std::string> AreaFilesOf(const std::vector<std::string>& texts);
+
 /// Adds --area to a verb.
 void AddAreaOption(CLI::App* app, std::vector<std::string>* areas);
 
