@@ -27,7 +27,7 @@ constexpr double kClearStep = 0.1;      // [m] between places at which that is a
 constexpr int kFewReturns = 5;
 constexpr double kMostApart = 0.4;      // of the returns
 constexpr double kMostThrough = 0.008;  // of the beams
-constexpr double kLeastExplained = 0.65;
+constexpr double kLeastExplained = 0.6;
 constexpr int kFewLost = 20;
 constexpr double kLeastAlike = 0.5;      // of the turns
 constexpr double kMostLost = 1.0 / 3.0;  // of the scans
@@ -150,13 +150,14 @@ std::string WhyDoubtful(const MapCounts& counts, const MapEvidence& evidence) {
                                         100.0 * counts.turns_alike));
   if (counts.num_breaks > 0)
     against.push_back(fmt::format(
-        "at {} places scans do not fit those before, and nothing ties both sides together",
+        "breaks at which scans do not fit those before, and nothing ties both sides together: {}",
         counts.num_breaks));
   if (AreLost(counts))
     against.push_back(
         fmt::format("{} of {} scans fitted nothing", counts.num_lost, counts.num_scans));
   if (!against.empty() && counts.num_searched > 0)
-    against.push_back(fmt::format("laser and odometry disagreed at {} scans", counts.num_searched));
+    against.push_back(
+        fmt::format("scans at which laser and odometry disagreed: {}", counts.num_searched));
   return base::Join(against, ", ");
 }
 
