@@ -25,15 +25,17 @@ namespace {
 using geometry::Pose2;
 using localisation::RobotLog;
 
-constexpr double kMatchSpacing = 0.05;  // [m] between points that are matched
-constexpr double kJumpSd = 0.3;         // [m], [rad] after a reset of the odometry
-constexpr double kUntoldSd = 0.1;       // [m], [rad] between scans without odometry
-constexpr double kSearchedSd = 0.05;    // [m], [rad] of a pose that was searched for
-constexpr double kTurnsTold = 0.5;      // [rad^2] of steps that tell whether turns are alike
-constexpr double kFitsNothing = 0.9;    // share of scans from which on there is no map
-constexpr double kUsualRange = 3.0;     // [m] in rooms
-constexpr double kSuspicious = 20.0;    // [m] more than that in the median is another unit
-constexpr double kDrawnStep = 0.05;     // [m], [rad] between scans that are drawn
+constexpr double kMatchSpacing = 0.05;   // [m] between points that are matched
+constexpr double kJumpSd = 0.3;          // [m], [rad] after a reset of the odometry
+constexpr double kUntoldSd = 0.1;        // [m], [rad] between scans without odometry
+constexpr double kSearchedSd = 0.05;     // [m], [rad] of a pose that was searched for
+constexpr double kBeyond = 4.0;          // sd of a prior that no odometry errs by
+constexpr double kBeyondAtLeast = 0.03;  // [m], [rad] likewise
+constexpr double kTurnsTold = 0.5;       // [rad^2] of steps that tell whether turns are alike
+constexpr double kFitsNothing = 0.9;     // share of scans from which on there is no map
+constexpr double kUsualRange = 3.0;      // [m] in rooms
+constexpr double kSuspicious = 20.0;     // [m] more than that in the median is another unit
+constexpr double kDrawnStep = 0.05;      // [m], [rad] between scans that are drawn
 
 bool IsFarFrom(const Pose2& a, const Pose2& b, double step) {
   return (a.position() - b.position()).norm() > step ||
@@ -47,6 +49,16 @@ ScanMatch ByOdometry(const PosePrior& prior) {
   const Eigen::Vector3d sd(prior.position_sd, prior.position_sd, prior.yaw_sd);
   match.information.diagonal() = sd.cwiseAbs2().cwiseInverse();
   return match;
+}
+
+/// Whether the laser shows the odometry wrong: by the wide search, or where its match lies farther
+/// from the prior than any odometry errs.
+bool ContradictsOdometry(const ScanMatch& match, const PosePrior& prior) {
+  if (match.is_searched) return true;
+  const Pose2 off = prior.X_MB.Inverse() * match.X_MB;
+  return match.fit >= kGoodFit &&
+         (off.position().norm() > kBeyondAtLeast + kBeyond * prior.position_sd ||
+          std::abs(geometry::WrapToPi(off.yaw)) > kBeyondAtLeast + kBeyond * prior.yaw_sd);
 }
 
 /// " Are ranges in centimetres? ..." where their median is one of no room; else nothing.
@@ -186,7 +198,7 @@ void Mapper::Impl::TakeScan(const RobotLog::Scan& scan) {
   const bool is_due = !points.empty() && keyframes_.IsDue(X_MB_);
   NoteBreak(few, match, is_due);
   // Else the next slip of the odometry would be looked for from here on, beside this one.
-  if (match && match->is_searched) {
+  if (match && ContradictsOdometry(*match, prior)) {
     anchor_ = {X_MB_, scan.X_OB, kSearchedSd};
     ++num_searched_;
   }
