@@ -54,23 +54,37 @@ Eigen::Vector2d LeastTold(const std::vector<Pair>& pairs) {
   return solver.eigenvectors().col(0);
 }
 
-Equations EquationsAt(const SurfaceMap& map, const SurfacePoints& points, const Pose2& X_MB,
-                      double surface_sd) {
-  Equations equations;
+/// The piece of wall that each point with a normal lies on, if there is one.
+/// @param[out] num_facing  points with normals.
+std::vector<Pair> PairsAt(const SurfaceMap& map, const SurfacePoints& points, const Pose2& X_MB,
+                          int* num_facing) {
   std::vector<Pair> pairs;
   const double c = std::cos(X_MB.yaw), s = std::sin(X_MB.yaw);
   Eigen::Matrix2d R;
   R << c, -s, s, c;
   for (const SurfacePoint& point : points) {
     if (!point.has_normal()) continue;
-    ++equations.num_facing;
+    ++*num_facing;
     const Eigen::Vector2d r = R * point.p, p = r + X_MB.position();
     const SurfaceMap::Piece* piece = map.Nearest(p, R * point.n);
     if (piece != nullptr) pairs.push_back({piece, r});
   }
+  return pairs;
+}
+
+/// [m] of the point from its piece, along the piece's normal.
+double DistanceOf(const Pair& pair, const Pose2& X_MB) {
+  return pair.piece->n.dot(pair.r + X_MB.position() - pair.piece->p);
+}
+
+Equations EquationsAt(const SurfaceMap& map, const SurfacePoints& points, const Pose2& X_MB,
+                      double surface_sd) {
+  Equations equations;
+  const std::vector<Pair> pairs = PairsAt(map, points, X_MB, &equations.num_facing);
   const Eigen::Vector2d least = LeastTold(pairs);
-  for (const auto& [piece, r] : pairs) {
-    const double distance = piece->n.dot(r + X_MB.position() - piece->p);
+  for (const Pair& pair : pairs) {
+    const auto& [piece, r] = pair;
+    const double distance = DistanceOf(pair, X_MB);
     if (std::abs(distance) < kFits) ++equations.num_fitting;
     const double sds = std::abs(distance) / surface_sd;
     const double weight = (sds <= kRobust ? 1.0 : kRobust / sds) / (surface_sd * surface_sd);
@@ -151,15 +165,11 @@ bool SeesMuch(const SurfacePoints& points) {
 
 std::optional<double> FitAt(const SurfaceMap& map, const SurfacePoints& points, const Pose2& X_MB) {
   if (!SeesMuch(points)) return std::nullopt;
-  const Pose2 turn{0.0, 0.0, X_MB.yaw};
-  int num_facing = 0, num_fitting = 0;
-  for (const SurfacePoint& point : points) {
-    if (!point.has_normal()) continue;
-    ++num_facing;
-    const Eigen::Vector2d p = X_MB * point.p;
-    const SurfaceMap::Piece* piece = map.Nearest(p, turn * point.n);
-    if (piece != nullptr && std::abs(piece->n.dot(p - piece->p)) < kFits) ++num_fitting;
-  }
+  int num_facing = 0;
+  const std::vector<Pair> pairs = PairsAt(map, points, X_MB, &num_facing);
+  const auto num_fitting = std::count_if(pairs.begin(), pairs.end(), [&](const Pair& pair) {
+    return std::abs(DistanceOf(pair, X_MB)) < kFits;
+  });
   return static_cast<double>(num_fitting) / num_facing;
 }
 
