@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include "hires/base/text.h"
+
 namespace hires::base {
 namespace {
 
@@ -31,6 +33,20 @@ std::string Shortened(const std::string& text, std::size_t at_most) {
   std::size_t end = at_most;
   while (end > 0 && IsWithinCharacter(shown[end])) --end;
   return shown.substr(0, end) + " ...";
+}
+
+std::vector<std::string> FirstLines(std::vector<std::string> lines) {
+  const std::size_t count = lines.size();
+  if (count <= kMostListed) return lines;
+  lines.resize(kMostListed);
+  lines.push_back(fmt::format("and {} more", count - kMostListed));
+  return lines;
+}
+
+std::string AllThatIsWrong(const std::string& where, const std::vector<std::string>& problems) {
+  if (problems.size() == 1) return problems.front();
+  return fmt::format("{}: {} things are wrong:\n  {}", where, problems.size(),
+                     Join(FirstLines(problems), "\n  "));
 }
 
 }  // namespace hires::base

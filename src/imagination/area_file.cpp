@@ -11,6 +11,7 @@
 
 #include "hires/base/error.h"
 #include "hires/base/log.h"
+#include "hires/base/short_text.h"
 #include "hires/base/text.h"
 
 namespace hires::imagination {
@@ -19,7 +20,7 @@ namespace {
 constexpr double kFarthest = 1000.0;  // [m] of an area, as in an SDF world
 constexpr int kDeepest = 16;          // maps and lists in one another
 constexpr int kMostNodes = 200'000;   // an alias may stand for many
-constexpr std::size_t kMostAreas = 2000, kMostErrors = 50;
+constexpr std::size_t kMostAreas = 2000;
 
 int LineOf(const YAML::Node& node) { return node.Mark().line + 1; }
 
@@ -78,16 +79,7 @@ class AreaReader {
           "orientation, in a list or by name",
           path_));
     }
-    if (errors_.size() > 1) {
-      const std::size_t count = errors_.size();
-      if (count > kMostErrors) {
-        errors_.resize(kMostErrors);
-        errors_.push_back(fmt::format("and {} more", count - kMostErrors));
-      }
-      throw base::ConfigError(
-          fmt::format("{}: {} things are wrong:\n  {}", path_, count, base::Join(errors_, "\n  ")));
-    }
-    if (!errors_.empty()) throw base::ConfigError(errors_[0]);
+    if (!errors_.empty()) throw base::ConfigError(base::AllThatIsWrong(path_, errors_));
     return std::move(areas_);
   }
 

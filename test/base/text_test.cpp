@@ -10,12 +10,14 @@
 
 #include "hires/base/error.h"
 #include "hires/base/rng.h"
+#include "hires/base/short_text.h"
 
 namespace hires::base::text_test {
 namespace {
 
 using ::testing::AllOf;
 using ::testing::ElementsAre;
+using ::testing::EndsWith;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 using ::testing::ThrowsMessage;
@@ -223,6 +225,16 @@ TEST_F(ReadTextFileTest, AForbiddenFileIsNamed) {
   if (::access(path.c_str(), R_OK) == 0) GTEST_SKIP() << "root may read everything";
   EXPECT_THAT([&] { ReadTextFile(path); },
               ThrowsMessage<ConfigError>(AllOf(HasSubstr(path), HasSubstr("permissions"))));
+}
+
+TEST(AllThatIsWrongTest, OneAloneIsItselfAndOfManyTheFirstAreListed) {
+  EXPECT_EQ(AllThatIsWrong("a.yaml", {"a.yaml:1: x"}), "a.yaml:1: x");
+  EXPECT_EQ(AllThatIsWrong("a.yaml", {"x", "y"}), "a.yaml: 2 things are wrong:\n  x\n  y");
+  const std::vector<std::string> many(kMostListed + 7, "x");
+  EXPECT_THAT(AllThatIsWrong("a.yaml", many),
+              AllOf(HasSubstr("57 things are wrong"), EndsWith("\n  x\n  and 7 more")));
+  EXPECT_EQ(FirstLines(many).size(), kMostListed + 1);
+  EXPECT_THAT(FirstLines({"x"}), ElementsAre("x"));
 }
 
 }  // namespace

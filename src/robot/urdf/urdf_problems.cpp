@@ -7,14 +7,8 @@
 
 #include "hires/base/error.h"
 #include "hires/base/short_text.h"
-#include "hires/base/text.h"
 
 namespace hires::robot {
-namespace {
-
-constexpr std::size_t kMostListed = 50;
-
-}  // namespace
 
 void UrdfProblems::Add(int line, const std::string& whole) {
   const std::string what = base::Shortened(whole);  // a name may be a file long
@@ -26,15 +20,10 @@ void UrdfProblems::Add(int line, const std::string& whole) {
 void UrdfProblems::ThrowIfAny() const {
   if (problems_.empty()) return;
   std::vector<std::string> listed;
-  for (const auto& [line, what] : problems_) {
-    if (listed.size() == kMostListed) break;
+  for (const auto& [line, what] : problems_)
     listed.push_back(line > 0 ? fmt::format("{}; line {}", what, line) : what);
-  }
   if (listed.size() == 1) throw base::ConfigError(where_ + ": " + listed.front());
-  if (problems_.size() > kMostListed)
-    listed.push_back(fmt::format("and {} more", problems_.size() - kMostListed));
-  throw base::ConfigError(fmt::format("{}: {} things are wrong:\n  {}", where_, problems_.size(),
-                                      base::Join(listed, "\n  ")));
+  throw base::ConfigError(base::AllThatIsWrong(where_, listed));
 }
 
 void UrdfProblems::Fail(int line, const std::string& what) {

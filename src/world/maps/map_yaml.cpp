@@ -10,6 +10,7 @@
 #include <set>
 
 #include "hires/base/error.h"
+#include "hires/base/short_text.h"
 #include "hires/base/spelling.h"
 #include "hires/base/text.h"
 #include "world/maps/map_picture.h"
@@ -304,11 +305,8 @@ MapParams ReadMapYaml(const std::string& yaml_path, MapFindings* findings) {
 }
 
 void ThrowErrors(const std::string& file, const MapFindings& findings) {
-  const std::vector<std::string>& errors = findings.errors;
-  if (errors.empty()) return;
-  if (errors.size() == 1) throw base::ConfigError(errors[0]);
-  throw base::ConfigError(fmt::format("{}: {} things are wrong:\n  {}", file, errors.size(),
-                                      base::Join(errors, "\n  ")));
+  if (!findings.errors.empty())
+    throw base::ConfigError(base::AllThatIsWrong(file, findings.errors));
 }
 
 }  // namespace hires::world

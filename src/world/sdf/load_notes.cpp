@@ -10,18 +10,6 @@
 #include "hires/base/text.h"
 
 namespace hires::world {
-namespace {
-
-/// The first ones, and how many more there are.
-std::vector<std::string> Listed(std::vector<std::string> all) {
-  const std::size_t count = all.size();
-  if (count <= LoadNotes::kMostListed) return all;
-  all.resize(LoadNotes::kMostListed);
-  all.push_back(fmt::format("and {} more", count - LoadNotes::kMostListed));
-  return all;
-}
-
-}  // namespace
 
 void LoadNotes::Add(const std::string& noun, const std::string& rest, const std::string& place,
                     int count) {
@@ -49,7 +37,7 @@ std::vector<std::string> LoadNotes::ProblemLines() const {
     lines.push_back(problem.first + problem.text +
                     (problem.count > 1 ? fmt::format(" (named {} times)", problem.count) : ""));
   }
-  return Listed(std::move(lines));
+  return base::FirstLines(std::move(lines));
 }
 
 std::vector<std::string> LoadNotes::Sentences() const {
@@ -58,7 +46,7 @@ std::vector<std::string> LoadNotes::Sentences() const {
     sentences.push_back(fmt::format("{} {}; {}{}", base::Counted(kind.count, kind.noun), kind.rest,
                                     kind.count > 1 ? "first " : "", kind.first));
   }
-  return Listed(std::move(sentences));
+  return base::FirstLines(std::move(sentences));
 }
 
 void LoadNotes::ThrowIfProblems(const std::string& path) const {

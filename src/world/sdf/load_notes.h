@@ -7,6 +7,8 @@
 #include <utility>
 #include <vector>
 
+#include "hires/base/short_text.h"
+
 namespace hires::world {
 
 /// What there is to say of a file that is loaded: each kind of thing that is played otherwise than
@@ -26,10 +28,8 @@ class LoadNotes {
 
   bool HasProblems() const { return !problems_.empty(); }
   /// More would not be listed: nothing is to be read for them.
-  bool IsFull() const { return problems_.size() > kMostListed; }
-  static constexpr std::size_t kMostListed = 50;  ///< problems, or kinds of notes
-  /// In the order of their first places, at most kMostListed and a line with the number of the
-  /// others.
+  bool IsFull() const { return problems_.size() > base::kMostListed; }
+  /// In the order of their first places, as base::FirstLines has them.
   std::vector<std::string> Sentences() const;
   /// @throws base::ConfigError with all problems, and after them what else there is to say, if
   /// there are any.
