@@ -254,13 +254,6 @@ double PlaceMargin(const Uncertainty& uncertainty, const geometry::Polygon& foot
                     geometry::CircumscribedRadius(footprint) * largest("localisation_yaw"));
 }
 
-Uncertainty LoadUncertaintyOf(const SetupConfig& config) {
-  const Uncertainty uncertainty =
-      config.uncertainty == "none" ? NoUncertainty() : LoadUncertainty(config.uncertainty);
-  if (config.uncertainty_over.empty()) return uncertainty;
-  return LaidOver(uncertainty, LoadUncertainty(config.uncertainty_over));
-}
-
 /// Whoever has no base laser drives by the map alone.
 SetupConfig ForRobot(SetupConfig config, const robot::Robot& robot) {
   if (!config.driving.obstacle_layer || !robot.profile.laser_link.empty()) return config;
@@ -290,6 +283,13 @@ void OverridePaths(const std::optional<std::string>& world, const std::optional<
   const bool is_none = uncertainty && *uncertainty == "none";
   if (is_none) config->uncertainty_over.clear();
   override_one(uncertainty, is_none ? &config->uncertainty : &config->uncertainty_over);
+}
+
+Uncertainty LoadUncertaintyOf(const SetupConfig& config) {
+  const Uncertainty uncertainty =
+      config.uncertainty == "none" ? NoUncertainty() : LoadUncertainty(config.uncertainty);
+  if (config.uncertainty_over.empty()) return uncertainty;
+  return LaidOver(uncertainty, LoadUncertainty(config.uncertainty_over));
 }
 
 SetupConfig ReadSetupConfig(const std::string& path) {

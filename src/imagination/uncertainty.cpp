@@ -32,6 +32,7 @@ base::Rng StreamOf(const std::string& quantity, const base::Rng& rng) {
 
 struct Quantity {
   std::string name;
+  std::string what;
   std::string unit;
   double lower, upper;  // what makes sense at all
   std::function<double&(Variation&)> slot;
@@ -40,58 +41,79 @@ struct Quantity {
 
 const std::vector<Quantity>& Quantities() {
   static const std::vector<Quantity> quantities{
-      {"object_mass", "factor", 0.1, 10, [](Variation& v) -> double& { return v.mass_factor; }},
-      {"object_radius", "factor", 0.2, 2, [](Variation& v) -> double& { return v.radius_factor; }},
-      {"object_com_height", "factor", 0.2, 1.8,
-       [](Variation& v) -> double& { return v.com_height_factor; }},
-      {"object_com_x", "m", -0.05, 0.05, [](Variation& v) -> double& { return v.com_offset.x(); }},
-      {"object_com_y", "m", -0.05, 0.05, [](Variation& v) -> double& { return v.com_offset.y(); }},
-      {"object_friction", "factor", 0.0, 10,
+      {"object_mass", "mass of each loose object, times", "factor", 0.1, 10,
+       [](Variation& v) -> double& { return v.mass_factor; }},
+      {"object_radius", "radius of the face on which a round object stands, times", "factor", 0.2,
+       2, [](Variation& v) -> double& { return v.radius_factor; }},
+      {"object_com_height",
+       "height of an object's centre of mass above the face it stands on, times", "factor", 0.2,
+       1.8, [](Variation& v) -> double& { return v.com_height_factor; }},
+      {"object_com_x", "centre of mass off its place, along the object's x axis", "m", -0.05, 0.05,
+       [](Variation& v) -> double& { return v.com_offset.x(); }},
+      {"object_com_y", "likewise, along its y axis", "m", -0.05, 0.05,
+       [](Variation& v) -> double& { return v.com_offset.y(); }},
+      {"object_friction", "friction of every contact with a loose object, times", "factor", 0.0, 10,
        [](Variation& v) -> double& { return v.friction_factor; }},
-      {"object_x", "m", -0.2, 0.2, [](Variation& v) -> double& { return v.object_offset.x(); }},
-      {"object_y", "m", -0.5, 0.5, [](Variation& v) -> double& { return v.object_offset.y(); }},
-      {"start_x", "m", -1, 1, [](Variation& v) -> double& { return v.start_offset.x; },
-       Arrival::kDriven},
-      {"start_y", "m", -1, 1, [](Variation& v) -> double& { return v.start_offset.y; },
-       Arrival::kDriven},
-      {"start_yaw", "rad", -3.2, 3.2, [](Variation& v) -> double& { return v.start_offset.yaw; },
-       Arrival::kDriven},
-      {"docked_x", "m", -0.2, 0.2, [](Variation& v) -> double& { return v.start_offset.x; },
-       Arrival::kDocked},
-      {"docked_y", "m", -0.2, 0.2, [](Variation& v) -> double& { return v.start_offset.y; },
-       Arrival::kDocked},
-      {"docked_yaw", "rad", -0.5, 0.5, [](Variation& v) -> double& { return v.start_offset.yaw; },
-       Arrival::kDocked},
-      {"localisation_x", "m", -1, 1, [](Variation& v) -> double& { return v.localisation_bias.x; }},
-      {"localisation_y", "m", -1, 1, [](Variation& v) -> double& { return v.localisation_bias.y; }},
-      {"localisation_yaw", "rad", -1, 1,
+      {"object_x", "where objects stand on the tray, off along its x axis", "m", -0.2, 0.2,
+       [](Variation& v) -> double& { return v.object_offset.x(); }},
+      {"object_y", "likewise, along its y axis", "m", -0.5, 0.5,
+       [](Variation& v) -> double& { return v.object_offset.y(); }},
+      {"start_x", "where a robot that drove up really stands, off ahead", "m", -1, 1,
+       [](Variation& v) -> double& { return v.start_offset.x; }, Arrival::kDriven},
+      {"start_y", "likewise, to the left", "m", -1, 1,
+       [](Variation& v) -> double& { return v.start_offset.y; }, Arrival::kDriven},
+      {"start_yaw", "likewise, turned", "rad", -3.2, 3.2,
+       [](Variation& v) -> double& { return v.start_offset.yaw; }, Arrival::kDriven},
+      {"docked_x", "where a robot that docked (move_base_blind) really stands, off ahead", "m",
+       -0.2, 0.2, [](Variation& v) -> double& { return v.start_offset.x; }, Arrival::kDocked},
+      {"docked_y", "likewise, to the left", "m", -0.2, 0.2,
+       [](Variation& v) -> double& { return v.start_offset.y; }, Arrival::kDocked},
+      {"docked_yaw", "likewise, turned", "rad", -0.5, 0.5,
+       [](Variation& v) -> double& { return v.start_offset.yaw; }, Arrival::kDocked},
+      {"localisation_x", "where it believes it is during the whole rollout, off ahead", "m", -1, 1,
+       [](Variation& v) -> double& { return v.localisation_bias.x; }},
+      {"localisation_y", "likewise, to the left", "m", -1, 1,
+       [](Variation& v) -> double& { return v.localisation_bias.y; }},
+      {"localisation_yaw", "likewise, turned", "rad", -1, 1,
        [](Variation& v) -> double& { return v.localisation_bias.yaw; }},
-      {"localisation_noise", "m", 0, 0.5,
+      {"localisation_noise", "sd of each believed x and y, anew in every cycle", "m", 0, 0.5,
        [](Variation& v) -> double& { return v.localisation_noise; }},
-      {"localisation_noise_yaw", "rad", 0, 0.5,
+      {"localisation_noise_yaw", "sd of each believed heading, likewise", "rad", 0, 0.5,
        [](Variation& v) -> double& { return v.localisation_noise_yaw; }},
-      {"ghost_rate", "1/s", 0, 10, [](Variation& v) -> double& { return v.ghost_rate; }},
-      {"wheel_slip", "share", 0, 0.5, [](Variation& v) -> double& { return v.wheel_slip; }},
-      {"floor_roughness", "m", 0, 0.02, [](Variation& v) -> double& { return v.floor_roughness; }},
-      {"command_delay", "s", 0, 1, [](Variation& v) -> double& { return v.command_delay; }},
-      {"late_cycle_probability", "share", 0, 1,
+      {"ghost_rate", "obstacles seen that are not there", "1/s", 0, 10,
+       [](Variation& v) -> double& { return v.ghost_rate; }},
+      {"wheel_slip", "sd of the speed's relative error", "share", 0, 0.5,
+       [](Variation& v) -> double& { return v.wheel_slip; }},
+      {"floor_roughness", "sd of the floor's height", "m", 0, 0.02,
+       [](Variation& v) -> double& { return v.floor_roughness; }},
+      {"command_delay", "commands come later than the robot's own lag", "s", 0, 1,
+       [](Variation& v) -> double& { return v.command_delay; }},
+      {"late_cycle_probability", "control cycles that come late", "share", 0, 1,
        [](Variation& v) -> double& { return v.late_cycle_probability; }},
-      {"late_cycle_delay", "s", 0, 5, [](Variation& v) -> double& { return v.late_cycle_delay; }},
-      {"loop_damping", "factor", 0.1, 10,
+      {"late_cycle_delay", "by how much these are late", "s", 0, 5,
+       [](Variation& v) -> double& { return v.late_cycle_delay; }},
+      {"loop_damping", "damping of the base's velocity loop, times", "factor", 0.1, 10,
        [](Variation& v) -> double& { return v.loop_damping_factor; }},
-      {"wheel_damping", "factor", 0, 10,
+      {"wheel_damping", "damping of wheels on casters, times", "factor", 0, 10,
        [](Variation& v) -> double& { return v.wheel_damping_factor; }},
-      {"sway", "factor", 0, 10, [](Variation& v) -> double& { return v.sway_factor; }},
-      {"detection_noise", "m", 0, 0.2, [](Variation& v) -> double& { return v.detection_noise; }},
-      {"detection_noise_yaw", "rad", 0, 1,
+      {"sway", "how far the base leans, times", "factor", 0, 10,
+       [](Variation& v) -> double& { return v.sway_factor; }},
+      {"detection_noise", "sd of each coordinate of an object that is seen", "m", 0, 0.2,
+       [](Variation& v) -> double& { return v.detection_noise; }},
+      {"detection_noise_yaw", "sd of its turn", "rad", 0, 1,
        [](Variation& v) -> double& { return v.detection_noise_yaw; }},
-      {"recognition_errors", "factor", 0, 10,
+      {"recognition_errors", "how often and far the recogniser errs, times", "factor", 0, 10,
        [](Variation& v) -> double& { return v.recognition_errors; }},
-      {"grasp_x", "m", -0.05, 0.05, [](Variation& v) -> double& { return v.grasp_offset.x(); }},
-      {"grasp_z", "m", -0.05, 0.05, [](Variation& v) -> double& { return v.grasp_offset.y(); }},
-      {"grasp_turn", "rad", -0.5, 0.5, [](Variation& v) -> double& { return v.grasp_turn; }},
-      {"scan_noise", "m", 0, 1, [](Variation& v) -> double& { return v.scan_noise; }},
-      {"encoder_noise", "rad", 0, 0.1, [](Variation& v) -> double& { return v.encoder_noise; }},
+      {"grasp_x", "held objects off their place, along the hand", "m", -0.05, 0.05,
+       [](Variation& v) -> double& { return v.grasp_offset.x(); }},
+      {"grasp_z", "likewise, across it", "m", -0.05, 0.05,
+       [](Variation& v) -> double& { return v.grasp_offset.y(); }},
+      {"grasp_turn", "likewise, turned from finger to finger", "rad", -0.5, 0.5,
+       [](Variation& v) -> double& { return v.grasp_turn; }},
+      {"scan_noise", "sd of each echo of the base's laser", "m", 0, 1,
+       [](Variation& v) -> double& { return v.scan_noise; }},
+      {"encoder_noise", "sd of each measured joint", "rad", 0, 0.1,
+       [](Variation& v) -> double& { return v.encoder_noise; }},
   };
   return quantities;
 }
@@ -254,6 +276,31 @@ Uncertainty LoadUncertainty(const std::string& path) {
 }
 
 Uncertainty NoUncertainty() { return {{}, {}, true, "none", HashOf({})}; }
+
+std::string ToString(const Distribution& distribution) {
+  const auto& [kind, first, second] = distribution;
+  switch (kind) {
+    case Distribution::Kind::kFixed:
+      return fmt::format("{:g}", first);
+    case Distribution::Kind::kUniform:
+      return fmt::format("{:g} .. {:g}", first, second);
+    case Distribution::Kind::kNormal:
+      return fmt::format("normal {:g}, sd {:g}", first, second);
+    case Distribution::Kind::kLogNormal:
+      return fmt::format("lognormal {:g}, log_sd {:g}", first, second);
+    case Distribution::Kind::kLaplace:
+      return fmt::format("laplace {:g}, distance {:g}", first, second);
+  }
+  return "";
+}
+
+std::vector<QuantityInfo> KnownQuantities() {
+  std::vector<QuantityInfo> infos;
+  for (const Quantity& quantity : Quantities()) {
+    infos.push_back({quantity.name, quantity.what, quantity.unit, quantity.lower, quantity.upper});
+  }
+  return infos;
+}
 
 std::vector<std::string> QuantityNames() {
   std::vector<std::string> names;

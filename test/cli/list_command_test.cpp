@@ -6,6 +6,7 @@
 #include "cli/command_run.h"
 #include "hires/actions/catalogue.h"
 #include "hires/base/text.h"
+#include "hires/imagination/uncertainty.h"
 #include "support/temporary_folder.h"
 
 namespace hires::cli::list_command_test {
@@ -74,6 +75,26 @@ TEST(ListCommandTest, AreasOfAMapComeWithWhatItShowsThereAndItsExtent) {
   EXPECT_EQ(RowOf(rows, "area", "(upper right corner)")["x"], 3.0);
   EXPECT_EQ(RowOf(rows, "area", "(lower left corner)")["y"], 2.0);
   EXPECT_THAT(List({"areas", "--map", map, "--world", "w.world"}).err, HasSubstr("excludes"));
+}
+
+TEST(ListCommandTest, QuantitiesComeWithWhatTheyAreAndHowTheyAreDrawn) {
+  const auto drawn = [](const std::vector<std::string>& words, const std::string& quantity) {
+    std::vector<std::string> all{"uncertainty"};
+    all.insert(all.end(), words.begin(), words.end());
+    return RowOf(Listed(all), "quantity", quantity)["drawn"];
+  };
+  const auto rows = Listed({"uncertainty"});
+  EXPECT_EQ(ColumnOf(rows, "quantity"), imagination::QuantityNames());
+  for (const std::string& words : ColumnOf(rows, "what it is")) EXPECT_FALSE(words.empty());
+  EXPECT_EQ(RowOf(rows, "quantity", "scan_noise")["unit"], "m");
+  EXPECT_EQ(drawn({}, "object_mass"), "0.8 .. 1.2");
+  EXPECT_EQ(drawn({}, "localisation_x"), "normal 0, sd 0.03");
+  const TemporaryFolder folder;
+  const std::string over = folder.Write(
+      "over.yaml", "object_mass: {distribution: fixed, value: 2, unit: factor, source: weighed}\n");
+  EXPECT_EQ(drawn({"--uncertainty", over}, "object_mass"), "2");
+  EXPECT_EQ(drawn({"--uncertainty", over}, "localisation_x"), "normal 0, sd 0.03") << "stays";
+  EXPECT_EQ(drawn({"--uncertainty", "none"}, "object_mass"), "certain");
 }
 
 TEST(ListCommandTest, ObjectsComeWithMassAndSize) {

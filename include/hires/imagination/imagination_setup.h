@@ -76,6 +76,10 @@ void OverridePaths(const std::optional<std::string>& world, const std::optional<
                    const std::optional<std::string>& objects,
                    const std::optional<std::string>& uncertainty, SetupConfig* config);
 
+/// The uncertainty of these files, the one that lies over the other laid over it.
+/// @throws base::ConfigError naming file, key and line.
+Uncertainty LoadUncertaintyOf(const SetupConfig& config);
+
 /// Everything constant that imagining needs, loaded once and shared by all requests.
 struct ImaginationSetup {
   std::shared_ptr<const simulation::Scene> scene;

@@ -64,6 +64,18 @@ void AddTo(base::Hasher* hasher, const std::map<std::string, Distribution>& quan
 /// All that a distribution may be given for.
 std::vector<std::string> QuantityNames();
 
+/// The same, in words.
+struct QuantityInfo {
+  std::string name;
+  std::string what;     ///< "friction of every contact with a loose object, times"
+  std::string unit;     ///< "m", "factor", ...
+  double lower, upper;  ///< that it may be given at all, in this unit
+};
+std::vector<QuantityInfo> KnownQuantities();
+
+/// "0.4 .. 1", "normal 0, sd 0.03", "0.002", ...
+std::string ToString(const Distribution& distribution);
+
 /// `text` is "none", or YAML as above.
 Uncertainty UncertaintyFromText(const std::string& text, const std::string& where);
 

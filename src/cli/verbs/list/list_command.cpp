@@ -18,6 +18,8 @@
 #include "hires/base/param_reader.h"
 #include "hires/base/text.h"
 #include "hires/imagination/client_config.h"
+#include "hires/imagination/imagination_setup.h"
+#include "hires/imagination/uncertainty.h"
 #include "hires/robot/load_robot.h"
 #include "hires/skills/action_loader.h"
 #include "hires/translation/areas.h"
@@ -294,13 +296,29 @@ Rows Truths(const Sources& sources) {
   return rows;
 }
 
+/// What a file for --uncertainty may name, and how the scene has it.
+Rows Quantities(const Sources& sources) {
+  const imagination::Uncertainty configured = imagination::LoadUncertaintyOf(sources.setup);
+  Rows rows;
+  for (const imagination::QuantityInfo& quantity : imagination::KnownQuantities()) {
+    const auto found = configured.quantities.find(quantity.name);
+    const bool is_certain = found == configured.quantities.end();
+    rows.push_back({{"quantity", quantity.name},
+                    {"unit", quantity.unit},
+                    {"drawn", is_certain ? "certain" : imagination::ToString(found->second)},
+                    {"may be", fmt::format("{:g} .. {:g}", quantity.lower, quantity.upper)},
+                    {"what it is", quantity.what}});
+  }
+  return rows;
+}
+
 const std::map<std::string, std::function<Rows(const Sources&)>>& Listers() {
   static const std::map<std::string, std::function<Rows(const Sources&)>> listers{
       {"areas", Areas},       {"objects", Objects},
       {"actions", Actions},   {"motion_sets", MotionSets},
       {"postures", Postures}, {"robots", Robots},
       {"worlds", Worlds},     {"scenarios", Scenarios},
-      {"truths", Truths}};
+      {"truths", Truths},     {"uncertainty", Quantities}};
   return listers;
 }
 
@@ -310,7 +328,7 @@ Sources SourcesOf(const ListOptions& o, const std::string& package_folder) {
   const auto client =
       imagination::ReadClientConfig(package_folder + "/config/imagination_client.yaml");
   sources.setup = imagination::ReadSetupConfig(o.scene.empty() ? client.scene : o.scene);
-  imagination::OverridePaths(o.world, o.robot, o.objects, "", &sources.setup);
+  imagination::OverridePaths(o.world, o.robot, o.objects, o.uncertainty, &sources.setup);
   sources.setup.map = o.map;
   sources.setup.areas = ReadAreas(o.areas);
   sources.setup.action_libraries = o.action_libraries;
@@ -358,6 +376,7 @@ void AddListVerb(CLI::App* app, bool with_tasks, ListOptions* o) {
                    "another robot, profile (.yaml) or URDF: its tray, motion sets and postures");
   verb->add_option("--objects", o->objects, "another catalogue of objects (YAML)");
   verb->add_option("--scene", o->scene, "another scene file instead of config/scene.yaml");
+  verb->add_option("--uncertainty", o->uncertainty, "a file that lies over the scene's, or none");
   verb->add_option("--actions", o->action_libraries, "library with more actions (.so)")
       ->allow_extra_args(false);
   if (with_tasks) {

@@ -14,7 +14,7 @@ namespace hires::cli {
 
 /// What was typed behind `hires list`.
 struct ListOptions {
-  std::string what, scene, world, map, robot, objects, domain, json;
+  std::string what, scene, world, map, robot, objects, uncertainty, domain, json;
   std::vector<std::string> action_libraries, areas;
   CLI::App* verb{nullptr};
 };
