@@ -87,7 +87,8 @@ bool KeyframeMap::IsDue(const Pose2& X_MB) const {
 Pose2 KeyframeMap::Add(SurfacePoints points, SurfacePoints few, const ScanMatch& match,
                        double way) {
   const int k = graph_.AddPose(match.X_MB);
-  keyframes_.push_back({std::move(points), std::move(few), way});
+  keyframes_.push_back(
+      std::make_shared<const Keyframe>(Keyframe{std::move(points), std::move(few), way}));
   if (k > 0) graph_.AddEdge(EdgeOf(k - 1, k, graph_.pose(k - 1), match, kUnknownStep));
   if (k % kLoopEvery == 0) CloseLoop();
   RebuildLocalMap();
@@ -101,7 +102,7 @@ void KeyframeMap::NoteBreak() {
 std::vector<PlacedPoints> KeyframeMap::Placed(int first, int last) const {
   std::vector<PlacedPoints> placed;
   for (int i = std::max(0, first); i <= last; ++i)
-    placed.push_back({&keyframes_[i].points, graph_.pose(i)});
+    placed.push_back({&keyframes_[i]->points, graph_.pose(i)});
   return placed;
 }
 
@@ -131,14 +132,14 @@ void KeyframeMap::CloseLoop() {
     if (WorstPositionSd(*match) > kTies) return;  // along a corridor the map may still be off
     ++num_loops_;
     breaks_.erase(std::upper_bound(breaks_.begin(), breaks_.end(), *place), breaks_.end());
-    way_at_loop_ = keyframes_[k].way;
+    way_at_loop_ = keyframes_[k]->way;
     return;
   }
 }
 
 /// [m] driven from a keyframe to the last one of which nothing says how far it led.
 double KeyframeMap::UntiedWay(int i) const {
-  return keyframes_.back().way - std::max(way_at_loop_, keyframes_[i].way);
+  return keyframes_.back()->way - std::max(way_at_loop_, keyframes_[i]->way);
 }
 
 /// The keyframe nearest to keyframe k, of those far enough back on the way.
@@ -149,7 +150,7 @@ std::optional<int> KeyframeMap::NearestBefore(int k, bool same_heading,
   std::optional<int> nearest;
   double best = std::numeric_limits<double>::infinity();
   for (int j = 0; j < k; ++j) {
-    if (keyframes_[k].way - keyframes_[j].way < params_.loop_length) break;
+    if (keyframes_[k]->way - keyframes_[j]->way < params_.loop_length) break;
     if (same_heading && AngleBetween(graph_.pose(j), graph_.pose(k)) > kSameHeading) continue;
     const double distance = DistanceBetween(graph_.pose(j), graph_.pose(k));
     if (distance >= std::min(best, radius_of(j))) continue;
@@ -167,7 +168,7 @@ std::optional<int> KeyframeMap::PlaceSeenBefore(bool same_heading) const {
 /// What was seen around a place before keyframe k came back to it.
 SurfaceMap KeyframeMap::MapAround(int place, int half, int k) const {
   int last = std::min(place + half, k - 1);
-  while (keyframes_[k].way - keyframes_[last].way < params_.loop_length / 2.0) --last;
+  while (keyframes_[k]->way - keyframes_[last]->way < params_.loop_length / 2.0) --last;
   return SurfaceMap(Placed(place - half, last));
 }
 
@@ -179,7 +180,7 @@ std::optional<ScanMatch> KeyframeMap::MatchWithPlace(int place) const {
   const SearchWindow window{std::min(0.3 + kDrift * unsure, 4.0),
                             std::min(0.1 + kYawDrift * unsure, 0.4)};
   const SurfaceMap map = MapAround(place, kChainHalf, k);
-  const SurfacePoints& few = keyframes_[k].few;
+  const SurfacePoints& few = keyframes_[k]->few;
   const Pose2 found = SearchMatch(map, few, graph_.pose(k), window);
   const ScanMatch match = RefineMatch(map, few, found, std::nullopt, params_.surface_sd);
   const bool is_good =
@@ -188,7 +189,7 @@ std::optional<ScanMatch> KeyframeMap::MatchWithPlace(int place) const {
 }
 
 /// Poses of neither are changed: who lies beside what was seen before is found so, too.
-MapReturns KeyframeMap::Returns() const {
+MapReturns KeyframeMap::CountReturns() const {
   std::vector<std::pair<int, int>> returns;
   for (int k = 0; k < size(); k += 2) {
     const auto place = NearestBefore(k, true, [](int) { return kReturned; });
@@ -198,12 +199,19 @@ MapReturns KeyframeMap::Returns() const {
   const std::size_t step = 1 + returns.size() / kMostReturns;
   for (std::size_t i = 0; i < returns.size(); i += step) {
     const auto [k, place] = returns[i];
-    const auto fit = FitAt(MapAround(place, kReturnedHalf, k), keyframes_[k].few, graph_.pose(k));
+    const auto fit = FitAt(MapAround(place, kReturnedHalf, k), keyframes_[k]->few, graph_.pose(k));
     if (!fit) continue;
     ++judged.num_judged;
     if (*fit < kGoodFit) ++judged.num_apart;
   }
   return judged;
+}
+
+std::function<MapReturns()> KeyframeMap::Returns() const {
+  const auto now = std::make_shared<KeyframeMap>(params_);
+  now->keyframes_ = keyframes_;
+  now->graph_ = graph_;
+  return [now] { return now->CountReturns(); };
 }
 
 /// A large correction is believed once the next one agrees with it: rooms may be alike.

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <functional>
+#include <memory>
 #include <optional>
 #include <vector>
 
@@ -32,7 +34,9 @@ class KeyframeMap {
   int size() const { return graph_.size(); }
   int num_loops() const { return num_loops_; }
   int num_breaks() const { return static_cast<int>(breaks_.size()); }
-  MapReturns Returns() const;
+  /// Judges the places that the drive came back to, as they are now, whenever it is called; another
+  /// thread may do so.
+  std::function<MapReturns()> Returns() const;
 
   /// What is added from now on may stand wrongly beside what is there, until a place seen before
   /// ties the two together.
@@ -58,10 +62,11 @@ class KeyframeMap {
   std::optional<int> PlaceSeenBefore(bool same_heading) const;
   SurfaceMap MapAround(int place, int half, int k) const;
   std::optional<ScanMatch> MatchWithPlace(int place) const;
+  MapReturns CountReturns() const;
   bool IsWitnessed(const geometry::Pose2& X_before, const geometry::Pose2& X_after);
 
   MapperParams params_;
-  std::vector<Keyframe> keyframes_;
+  std::vector<std::shared_ptr<const Keyframe>> keyframes_;
   PoseGraph graph_;
   std::optional<SurfaceMap> local_;  // of the latest keyframes
   std::optional<Correction> asked_;  // not yet believed

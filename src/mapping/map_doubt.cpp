@@ -117,7 +117,7 @@ bool AreLost(const MapCounts& counts) {
 
 MapEvidence EvidenceOf(const MapSketch& sketch, const OccupancyGrid& grid) {
   MapEvidence evidence;
-  evidence.returns = sketch.returns;
+  evidence.returns = sketch.judge_returns();
   const double finer = grid.resolution / kJudgedCell;
   if (finer > 0.8 && finer < 1.25) {
     JudgeBeams(sketch, grid, &evidence);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -66,7 +67,7 @@ struct MapSketch {
   std::vector<std::shared_ptr<const localisation::RobotLog::Scan>> scans;  ///< show something new
   std::vector<geometry::Pose2> X_MBs;                                      ///< one for each
   double resolution{0.05}, max_range{30.0};                                ///< [m]
-  MapReturns returns;
+  std::function<MapReturns()> judge_returns;  ///< fits scans anew: takes time, too
 };
 
 /// Takes time in proportion to all beams and their lengths.
