@@ -3,7 +3,6 @@
 #include <Eigen/Core>
 #include <optional>
 
-#include "hires/base/rng.h"
 #include "hires/geometry/polygon.h"
 #include "hires/perception/point_cloud.h"
 
@@ -36,22 +35,22 @@ struct CameraStand {
 };
 
 struct TableParams {
-  int num_samples{300};    ///< planes through three points that are tried at least; ten times as
-                           ///< many where the best one holds few points
-  double tolerance{2.0};   ///< [DepthNoise] from the plane, of points that vote for it
-  double min_share{0.05};  ///< of all measured points, at least on a table
+  int num_samples{300};    ///< planes through three points; ten times as many are tried at most
+  double tolerance{2.0};        ///< [DepthNoise] from the plane, of points that vote for it
+  double min_share{0.05};       ///< of all measured points, at least on a table
   double max_inclination{0.2};  ///< [rad] against what is level, where that is known
   double min_height{0.55};      ///< [m] of a table above the floor, where that is known
   double max_height{1.3};       ///< [m] likewise
 };
 
-/// The plane with the most points of which the camera is on the upper side (RANSAC [Fischler,
-/// Bolles 1981], then least squares); those just beside it speak against it, as a wall that crosses
-/// it has as many. Where two tables are seen, the larger one in the picture.
-/// @param stand  without it, any plane is a table, the floor too.
+/// The plane with the most points of which the camera is on the upper side (FindPlaneByRansac, then
+/// least squares). Where two tables are seen, the larger one in the picture.
+/// @param stand  without it the camera is taken to be upright, or to look straight down from at
+/// most 2.5 m, and a table is any plane that is no wall then; the floor too, where none as large as
+/// params has it is 0.45 m or more above it.
 /// @return nothing where no plane holds `min_share` of the points, and 200 of them.
 std::optional<Table> FindTable(const PointCloud& cloud, const std::optional<CameraStand>& stand,
-                               const TableParams& params, base::Rng rng);
+                               const TableParams& params);
 
 /// A plate whose place is known to some centimetres, where the cloud has it: the plane of the
 /// points about it (their median, then least squares), as kinematics errs by more than a thing is

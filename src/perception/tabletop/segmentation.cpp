@@ -16,7 +16,7 @@ namespace hires::perception {
 namespace {
 
 // Fork of the caller's stream.
-enum Stream { kTableStream, kPartsStream };
+enum Stream { kPartsStream = 1 };
 
 // What is farther than a depth camera reaches was not measured: noise that grows with the square of
 // the distance would have it on any plane, and a single such point the table as long as it is far.
@@ -151,7 +151,7 @@ Segmentation SegmentOn(const Table& table, const PointCloud& cloud,
 Segmentation SegmentTabletop(const PointCloud& cloud, const std::optional<CameraStand>& stand,
                              const SegmentationParams& params, const base::Rng& rng) {
   const PointCloud near = WithinReach(cloud);
-  const auto table = FindTable(near, stand, params.table, rng.Fork(kTableStream));
+  const auto table = FindTable(near, stand, params.table);
   if (table) return SegmentNear(*table, Outline::kSeen, near, params, rng);
   Segmentation nothing;
   nothing.labels.assign(cloud.points.size(), kLabelNone);

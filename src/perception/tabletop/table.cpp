@@ -7,13 +7,14 @@
 #include <vector>
 
 #include "hires/perception/depth_sensor.h"
+#include "perception/patches/ransac_plane.h"
 
 namespace hires::perception {
 namespace {
 
-constexpr int kVoters = 6000;  // points that judge a sample; all of them refine the best one
+constexpr int kVoters = 6000;  // points that choose a plane; all of them refine it
 constexpr int kRefinements = 3;
-constexpr double kMostSamples = 10.0;  // times num_samples, while no plane holds enough points
+constexpr int kMostSamples = 10;       // times num_samples, while no plane holds enough points
 constexpr double kOutlineCell = 0.02;  // [m]
 constexpr int kMostCells = 2000;       // along each axis; larger tables have larger cells
 constexpr double kMinPiece = 0.1;      // of the largest piece
@@ -25,6 +26,13 @@ constexpr double kPlateReach = 0.03;  // [m] by which a plate's place may err up
 constexpr double kPlateTilt = 0.05;   // [rad] by which it may lean otherwise
 constexpr std::size_t kPlatePoints = 200, kTablePoints = 200;  // fewer are none
 constexpr double kBeside = 3.0;  // tolerances up to which points are beside a plane
+// Who does not know how his camera stands holds it upright: level planes then look up in the
+// picture, and walls do not, unless he looks straight down.
+constexpr double kMostUpright = 1.37;     // [rad] of a normal against the picture's up
+constexpr double kFromAbove = 0.3;        // [rad] against the way to the camera
+constexpr double kFarthestBelow = 2.5;    // [m] from the camera then; farther away are walls
+constexpr double kLeastOverFloor = 0.45;  // [m] of a table over a floor
+constexpr double kParallel = 0.1;         // [rad] between the two
 
 struct Plane {
   Eigen::Vector3d normal;
@@ -46,16 +54,6 @@ int SideOf(const Plane& plane, const Point& point) {
   const double height = (plane.normal.dot(point.p) + plane.offset) / point.tolerance;
   if (std::abs(height) < 1.0 || std::abs(height) >= kBeside) return 0;
   return height < 0.0 ? -1 : 1;
-}
-
-// With the camera, at the origin, above it.
-std::optional<Plane> PlaneThrough(const Eigen::Vector3d& a, const Eigen::Vector3d& b,
-                                  const Eigen::Vector3d& c) {
-  const Eigen::Vector3d normal = (b - a).cross(c - a);
-  if (normal.norm() < 1e-6) return std::nullopt;
-  Plane plane{normal.normalized(), -normal.normalized().dot(a)};
-  if (plane.offset < 0.0) plane = {-plane.normal, -plane.offset};
-  return plane;
 }
 
 /// Where the floor is known, only what is as high as tables are (the pass-through filter of the
@@ -87,9 +85,14 @@ Candidates CandidatesOf(const PointCloud& cloud, const std::optional<CameraStand
   return out;
 }
 
-bool IsLevel(const Plane& plane, const std::optional<CameraStand>& stand,
-             const TableParams& params) {
-  return !stand || plane.normal.dot(stand->up_C) >= std::cos(params.max_inclination);
+/// Which planes may be a table's.
+struct Level {
+  Eigen::Vector3d up_C;    // of length 1
+  double max_inclination;  // [rad] of its normal against that
+};
+
+bool IsLevel(const Plane& plane, const Level& level) {
+  return plane.normal.dot(level.up_C) >= std::cos(level.max_inclination);
 }
 
 Plane LeastSquares(const std::vector<Point>& points, const Plane& plane) {
@@ -112,43 +115,22 @@ Plane LeastSquares(const std::vector<Point>& points, const Plane& plane) {
                                 : Plane{-normal, normal.dot(mean)};
 }
 
-/// How many samples have three points of a plane among them for certain, if this share of all
-/// points are on it [Fischler, Bolles 1981, section II.B].
-int SamplesFor(double share, const TableParams& params) {
-  constexpr double kMissed = 0.01;
-  const double needed = std::log(kMissed) / std::log1p(-std::pow(std::min(share, 0.999), 3.0));
-  return static_cast<int>(
-      std::clamp(needed, 1.0 * params.num_samples, kMostSamples * params.num_samples));
-}
-
-std::optional<Plane> BestSample(const std::vector<Point>& points,
-                                const std::optional<CameraStand>& stand, const TableParams& params,
-                                base::Rng* rng) {
+/// The one that most points are on. Noise is taken as of the middle one's distance.
+std::optional<Plane> LargestPlane(const std::vector<Point>& points, const Level& level,
+                                  const TableParams& params) {
   const std::size_t step = std::max<std::size_t>(1, points.size() / kVoters);
-  std::vector<Point> voters;
-  for (std::size_t k = 0; k < points.size(); k += step) voters.push_back(points[k]);
-  std::optional<Plane> best;
-  int best_votes = 0;
-  int num_samples = static_cast<int>(kMostSamples) * params.num_samples;
-  for (int i = 0; i < num_samples; ++i) {
-    const auto pick = [&] { return points[rng->Index(static_cast<int>(points.size()))].p; };
-    const Eigen::Vector3d a = pick(), b = pick(), c = pick();
-    const auto plane = PlaneThrough(a, b, c);
-    if (!plane || !IsLevel(*plane, stand, params)) continue;
-    int votes = 0, below = 0, above = 0;
-    for (const Point& voter : voters) {
-      votes += Supports(*plane, voter);
-      const int side = SideOf(*plane, voter);
-      below += side < 0;
-      above += side > 0;
-    }
-    votes -= std::max(below, above);
-    if (votes <= best_votes) continue;
-    best_votes = votes;
-    best = plane;
-    num_samples = SamplesFor(best_votes * static_cast<double>(step) / points.size(), params);
+  std::vector<Eigen::Vector3d> voters;
+  std::vector<double> tolerances;
+  for (std::size_t k = 0; k < points.size(); k += step) {
+    voters.push_back(points[k].p);
+    tolerances.push_back(points[k].tolerance);
   }
-  return best;
+  const auto middle = tolerances.begin() + static_cast<std::ptrdiff_t>(tolerances.size() / 2);
+  std::nth_element(tolerances.begin(), middle, tolerances.end());
+  const auto found = FindPlaneByRansac(
+      voters, level.up_C, {*middle, level.max_inclination, kMostSamples * params.num_samples});
+  if (!found) return std::nullopt;
+  return Plane{found->head<3>(), found->w()};
 }
 
 /// Points of a plane in square cells, and which of the cells hang together. Cells in which
@@ -301,26 +283,49 @@ Table TableIn(const Plane& plane) {
   return table;
 }
 
-}  // namespace
-
-std::optional<Table> FindTable(const PointCloud& cloud, const std::optional<CameraStand>& stand,
-                               const TableParams& params, base::Rng rng) {
-  const Candidates candidates = CandidatesOf(cloud, stand, params);
-  const std::vector<Point>& points = candidates.points;
+/// @param least  points that it must have
+std::optional<Table> LargestTable(const std::vector<Point>& points, const Level& level,
+                                  double least, const TableParams& params) {
   if (points.size() < kTablePoints) return std::nullopt;
-  const auto best = BestSample(points, stand, params, &rng);
+  const auto best = LargestPlane(points, level, params);
   if (!best) return std::nullopt;
   Plane plane = *best;
   for (int i = 0; i < kRefinements; ++i) plane = LeastSquares(points, plane);
   const TableTop top = TopOf(points, TableIn(plane));
-  const double least = std::max<double>(kTablePoints, params.min_share * candidates.num_measured);
   if (top.border.size() < 3 || top.points.size() < least) return std::nullopt;
   plane = LeastSquares(top.points, plane);
-  if (!IsLevel(plane, stand, params)) return std::nullopt;
+  if (!IsLevel(plane, level)) return std::nullopt;
   Table table = TableIn(plane);
   for (const Eigen::Vector3d& p : top.border) table.outline.push_back(table.FromAbove(p));
   table.outline = geometry::ConvexHull(std::move(table.outline));
   return table;
+}
+
+/// The same over a floor, so high as tables are and not what stands on them; else the floor.
+Table TableOver(const Table& floor, const std::vector<Point>& points, double least,
+                const TableParams& params) {
+  std::vector<Point> above;
+  for (const Point& point : points) {
+    const double height = floor.HeightOf(point.p);
+    if (height > kLeastOverFloor && height < params.max_height) above.push_back(point);
+  }
+  return LargestTable(above, {floor.normal, kParallel}, least, params).value_or(floor);
+}
+
+}  // namespace
+
+std::optional<Table> FindTable(const PointCloud& cloud, const std::optional<CameraStand>& stand,
+                               const TableParams& params) {
+  const Candidates candidates = CandidatesOf(cloud, stand, params);
+  const std::vector<Point>& points = candidates.points;
+  const double least = std::max<double>(kTablePoints, params.min_share * candidates.num_measured);
+  if (stand) return LargestTable(points, {stand->up_C, params.max_inclination}, least, params);
+  const auto seen_from_aside =
+      LargestTable(points, {-Eigen::Vector3d::UnitY(), kMostUpright}, least, params);
+  if (seen_from_aside) return TableOver(*seen_from_aside, points, least, params);
+  const auto from_above =
+      LargestTable(points, {-Eigen::Vector3d::UnitZ(), kFromAbove}, least, params);
+  return from_above && from_above->offset < kFarthestBelow ? from_above : std::nullopt;
 }
 
 Table PlateIn(const PointCloud& cloud, Table expected, const TableParams& params) {

@@ -114,6 +114,9 @@ std::string DoubtText(const Recognition& seen) {
     if (seen.detections[i].may_be_beside)
       unsure.push_back(std::to_string(perception::kLabelFirstThing + i));
   std::string text;
+  constexpr double kStraightOn = 0.955;  // cosine
+  if (seen.segmentation.table && -seen.segmentation.table->normal.z() > kStraightOn)
+    text += "it is seen from straight above: a wall before the camera would look the same\n";
   if (!unsure.empty()) {
     text += fmt::format("may be beside the table, which is hidden about them: {}\n",
                         base::Join(unsure, ", "));
