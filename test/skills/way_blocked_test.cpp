@@ -302,6 +302,29 @@ TEST(WayBlockedTest, UnmappedDotsAreSaidToBeInTheWay) {
   EXPECT_GT(num_stuck, 0);
 }
 
+// However thin the walls beside it are, and it is deep.
+TEST(WayBlockedTest, ASillInTheOnlyDoorIsNamedWithItsHeight) {
+  base::Rng rng(5);
+  for (int i = 0; i < Rounds(24); ++i) {
+    const double width = rng.Uniform(1.2, 2.0), yaw = rng.Uniform(-3.1, 3.1);
+    const double height = rng.Uniform(0.045, 0.078);  // [m]; shapes of this robot end at 0.04 m
+    world::World world = WithDoor(width, rng.Uniform(0.06, 0.3), yaw);
+    world::StaticBody sill =
+        Block("sill", {rng.Uniform(0.06, 0.4), width, height}, {3.0, 0.0, 0.5 * height});
+    sill.X_MB = geometry::Lift({0.0, 0.0, yaw}) * sill.X_MB;
+    world.statics.push_back(sill);
+    const auto context = std::make_shared<const DrivingContext>(
+        MakeDrivingContext(world, TrayRobot(), MoveBaseParams{}));
+    const Pose2 turned{0.0, 0.0, yaw};
+    const Status status = FirstWord(context, turned, turned * Pose2{6.0, 0.0, 0.0});
+    EXPECT_EQ(status.failure.code, FailureCode::kNoPath) << i;
+    EXPECT_THAT(status.failure.detail,
+                AllOf(HasSubstr("'sill"), HasSubstr(fmt::format("it is {:.3f} m high", height)),
+                      HasSubstr("reach down to 0.040 m")))
+        << i;
+  }
+}
+
 TEST(WayBlockedTest, TheWayRoundATooNarrowDoorIsTaken) {
   world::World world = WithDoor(0.9, 0.2, 0.0);
   world.statics.erase(world.statics.begin() + 2, world.statics.begin() + 4);  // so there is a way

@@ -8,10 +8,12 @@
 #include <limits>
 #include <queue>
 #include <utility>
+#include <vector>
 
 #include "hires/geometry/angles.h"
 #include "hires/robot/link_bounds.h"
 #include "skills/driving/by_height.h"
+#include "world/floor_level.h"
 
 namespace hires::skills {
 namespace {
@@ -290,6 +292,38 @@ class Explainer {
                        IsInLayer(cell_M) ? "" : ", but its footprint counts at all heights");
   }
 
+  /// Whether it is no higher than what a base drives over whose shapes end above it.
+  bool IsLow(const world::NamedOutline& thing) const {
+    return thing.upper <= context_.params.min_obstacle_height;
+  }
+
+  /// Of each cell, whether low things alone are there, or so near that the map may have them there.
+  std::vector<bool> LowCells() const {
+    std::vector<bool> low(static_cast<std::size_t>(costmap_.width()) * costmap_.height(), false);
+    if (!context_.obstacles) return low;
+    for (const world::NamedOutline& thing : *context_.obstacles)
+      if (IsLow(thing)) Mark(thing, costmap_.resolution(), true, &low);
+    if (std::find(low.begin(), low.end(), true) == low.end()) return low;
+    for (const world::NamedOutline& thing : *context_.obstacles)
+      if (!IsLow(thing)) Mark(thing, 0.0, false, &low);
+    return low;
+  }
+
+  /// "; it is 0.008 m high, ...": where a low thing has the cell there; else empty.
+  std::string LowText(const Eigen::Vector2d& cell_M) const {
+    const bool is_thing = context_.obstacles && !IsHole(cell_M);
+    const world::NamedOutline* there = is_thing ? NearestTo(cell_M) : nullptr;
+    if (there == nullptr || !IsLow(*there)) return "";
+    geometry::Aabb all;
+    for (const geometry::Aabb& link : robot::LinkBounds(*context_.robot)) all.Include(link);
+    return fmt::format(
+        "; it is {:.3f} m high, and the robot's shapes, which reach down to {:.3f} m, touch what "
+        "is "
+        "higher than {:.3f} m: where it really rolls over that, lower the thing in the world, or "
+        "have these shapes end higher in the robot's",
+        there->upper, std::max(0.0, all.lower.z()), std::max(all.lower.z(), world::kFloorStep));
+  }
+
   /// [m] of free room through a place, in the direction of what is nearest; none: it is wide.
   std::optional<double> WidthAt(const Eigen::Vector2d& p_M,
                                 const Eigen::Vector2d& nearest_M) const {
@@ -366,6 +400,28 @@ class Explainer {
     return free;
   }
 
+  /// Sets all cells that are no farther from a thing than `within` [m].
+  void Mark(const world::NamedOutline& thing, double within, bool value,
+            std::vector<bool>* cells) const {
+    Eigen::Vector2d lower = thing.outline_M.front(), upper = lower;
+    for (const Eigen::Vector2d& corner : thing.outline_M) {
+      lower = lower.cwiseMin(corner);
+      upper = upper.cwiseMax(corner);
+    }
+    const Eigen::Vector2d margin = Eigen::Vector2d::Constant(within + costmap_.resolution());
+    int left = 0, below = 0, right = 0, above = 0;
+    costmap_.CellOf(lower - margin, &left, &below);
+    costmap_.CellOf(upper + margin, &right, &above);
+    for (int row = std::max(0, below); row <= std::min(above, costmap_.height() - 1); ++row) {
+      for (int column = std::max(0, left); column <= std::min(right, costmap_.width() - 1);
+           ++column) {
+        const geometry::Polygon cell = CellAt(costmap_.CentreOf(column, row));
+        if (geometry::Distance(thing.outline_M, cell) > within) continue;
+        (*cells)[static_cast<std::size_t>(row) * costmap_.width() + column] = value;
+      }
+    }
+  }
+
   geometry::Polygon CellAt(const Eigen::Vector2d& cell_M) const {
     const double half = 0.5 * costmap_.resolution();
     return {cell_M + Eigen::Vector2d(-half, -half), cell_M + Eigen::Vector2d(half, -half),
@@ -402,7 +458,9 @@ class Explainer {
 /// From start to goal through what is in the way, through as little as can be.
 class Intrusion {
  public:
-  explicit Intrusion(const Costmap& costmap) : costmap_(costmap) {
+  /// @param low  of each cell: what is there is less in the way than a wall
+  Intrusion(const Costmap& costmap, std::vector<bool> low)
+      : costmap_(costmap), low_(std::move(low)) {
     const std::size_t size = static_cast<std::size_t>(costmap.width()) * costmap.height();
     cost_.assign(size, std::numeric_limits<double>::infinity());
     parent_.assign(size, -1);
@@ -434,9 +492,9 @@ class Intrusion {
   }
   double CostOf(int column, int row) const {
     const std::uint8_t cost = costmap_.cost(column, row);
-    return cost < navigation::kInscribedCost ? 1.0
-           : IsTaken(costmap_, column, row)  ? kSolid
-                                             : kNarrow;
+    return cost < navigation::kInscribedCost                                          ? 1.0
+           : IsTaken(costmap_, column, row) && !low_[row * costmap_.width() + column] ? kSolid
+                                                                                      : kNarrow;
   }
   void Expand() {
     const auto [cost, cell] = open_.top();
@@ -458,6 +516,7 @@ class Intrusion {
 
   using Open = std::pair<double, int>;
   const Costmap& costmap_;
+  std::vector<bool> low_;
   std::vector<double> cost_;
   std::vector<int> parent_;
   std::priority_queue<Open, std::vector<Open>, std::greater<>> open_;
@@ -597,7 +656,8 @@ std::string WhyNoPath(const DrivingContext& context, const Costmap& costmap, con
     return too_narrow(narrow->X_MW.position(), {-std::sin(yaw), std::cos(yaw)}, narrow->width,
                       narrow->footprint_width);
   }
-  const std::vector<Eigen::Vector2d> cells = Intrusion(costmap).Find(X_MStart, X_MGoal);
+  const std::vector<Eigen::Vector2d> cells =
+      Intrusion(costmap, explainer.LowCells()).Find(X_MStart, X_MGoal);
   const auto is_room = [&](const Eigen::Vector2d& p_M) {
     return CostAt(costmap, p_M) < navigation::kInscribedCost;
   };
@@ -611,8 +671,9 @@ std::string WhyNoPath(const DrivingContext& context, const Costmap& costmap, con
   const auto solid = std::find_if(
       last, beyond, [&](const Eigen::Vector2d& p_M) { return explainer.IsTakenAt(p_M); });
   if (solid != beyond) {
+    const std::string low = explainer.LowText(*solid);
     return fmt::format("{}; beyond it is {}{}", ends_at(end), explainer.WhatIsAt(*solid),
-                       explainer.HeightText(*solid));
+                       low.empty() ? explainer.HeightText(*solid) : low);
   }
   std::optional<double> least;
   Eigen::Vector2d narrowest = end, left(0.0, 1.0);
