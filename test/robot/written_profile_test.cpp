@@ -31,10 +31,11 @@ TEST(WriteProfileTest, OurRobotsGiveTheSameRobotBitByBit) {
     const std::string urdf = kRoot + "/urdf/" + name + ".urdf";
     const std::string text = WriteProfile(urdf, folder.path().string());
     const Robot robot = LoadRobot(folder.Write(std::string(name) + ".yaml", text));
-    EXPECT_EQ(robot.hash(), LoadRobotFromUrdf(urdf).hash()) << text;
+    const Robot bare = LoadRobotFromUrdf(urdf);
+    EXPECT_EQ(robot.hash(), bare.hash()) << text;
     EXPECT_THAT(LinesOf(text), Each(HasSubstr("# "))) << "a comment for each line";
-    EXPECT_THAT(robot.assumed, Not(Contains(HasSubstr("motion_sets"))));
-    EXPECT_THAT(robot.assumed, Not(Contains(HasSubstr("base_controller"))));
+    EXPECT_EQ(robot.assumed, bare.assumed) << "nobody has corrected anything";
+    EXPECT_THAT(robot.assumed, Contains(HasSubstr("motion_sets")));
   }
 }
 
@@ -76,8 +77,24 @@ TEST(WriteProfileTest, DrawnRobotsGiveTheSameRobotBitByBit) {
     const Robot robot = LoadRobot(folder.Write("b/drawn.yaml", text));
     ASSERT_EQ(robot.hash(), bare.hash()) << text;
     EXPECT_EQ(robot.base_height, bare.base_height);
+    EXPECT_EQ(robot.assumed, bare.assumed);
     EXPECT_THAT(LinesOf(text), Each(HasSubstr("# ")));
   }
+}
+
+TEST(WriteProfileTest, WhatIsNoLongerACommentIsNoLongerAssumed) {
+  const TemporaryFolder folder;
+  const std::string text = WriteProfile(kRoot + "/urdf/cart.urdf", folder.path().string());
+  std::string checked;
+  for (const std::string& line : LinesOf(text)) {
+    const bool is_key = line.rfind("# ", 0) == 0 && line.find(": ASSUMED") == std::string::npos &&
+                        line.find(" # ") != std::string::npos;
+    checked += (is_key ? line.substr(2) : line) + "\n";
+  }
+  const Robot robot = LoadRobot(folder.Write("checked.yaml", checked));
+  EXPECT_EQ(robot.hash(), LoadRobotFromUrdf(kRoot + "/urdf/cart.urdf").hash()) << checked;
+  EXPECT_THAT(robot.assumed, Not(Contains(HasSubstr("motion_sets"))));
+  EXPECT_THAT(robot.assumed, Not(Contains(HasSubstr("base_controller"))));
 }
 
 }  // namespace

@@ -34,6 +34,10 @@ class LineWriter {
     text_ +=
         line.empty() ? fmt::format("# {}\n", plain) : fmt::format("{:<34} # {}\n", line, plain);
   }
+  /// The same as a comment: what nobody has said of the robot does not stand in its profile.
+  void AddAssumed(const std::string& line, const std::string& comment) {
+    Add("# " + line, comment);
+  }
   const std::string& text() const { return text_; }
 
  private:
@@ -58,19 +62,20 @@ std::string FootprintComment(const geometry::Polygon& footprint) {
 
 void AddMotionSet(const std::string& indent, const MotionSet& set, LineWriter* out) {
   const auto line = [&](const char* key, double value, const char* unit) {
-    out->Add(fmt::format("{}{}: {}", indent, key, value), unit);
+    out->AddAssumed(fmt::format("{}{}: {}", indent, key, value), unit);
   };
-  line("max_linear_velocity", set.max_linear_velocity, "[m/s] ASSUMED, a PR2's");
-  line("max_angular_velocity", set.max_angular_velocity, "[rad/s] ASSUMED, a PR2's");
-  line("max_linear_acceleration", set.max_linear_acceleration, "[m/s^2] ASSUMED, a PR2's");
-  line("max_angular_acceleration", set.max_angular_acceleration, "[rad/s^2] ASSUMED, a PR2's");
+  line("max_linear_velocity", set.max_linear_velocity, "[m/s] a PR2's");
+  line("max_angular_velocity", set.max_angular_velocity, "[rad/s] a PR2's");
+  line("max_linear_acceleration", set.max_linear_acceleration, "[m/s^2] a PR2's");
+  line("max_angular_acceleration", set.max_angular_acceleration, "[rad/s^2] a PR2's");
 }
 
 void AddTray(const RobotProfile& profile, LineWriter* out) {
-  out->Add("tray_link: " + InQuotes(profile.tray_link),
-           profile.tray_link.empty()
-               ? "link that carries loose objects; no link with a shape has \"tray\" in its name"
-               : "link that carries loose objects, by its name");
+  out->AddAssumed(
+      "tray_link: " + InQuotes(profile.tray_link),
+      profile.tray_link.empty()
+          ? "link that carries loose objects; no link with a shape has \"tray\" in its name"
+          : "link that carries loose objects, by its name");
   if (profile.tray_link.empty()) return;
   const Eigen::Vector3d& p = profile.X_TO.translation;
   out->Add(fmt::format("# object_on_tray: {{xyz: [{:.4g}, {:.4g}, {:.4g}], rpy: [0, 0, 0]}}", p.x(),
@@ -81,40 +86,37 @@ void AddTray(const RobotProfile& profile, LineWriter* out) {
 
 void AddLaser(const Robot& robot, const std::string& xml, LineWriter* out) {
   const std::vector<std::string> links = LaserLinks(robot.model, xml);
-  out->Add(
-      "laser_link: \"\"",
-      links.empty()
-          ? "link of a planar laser; none is known, so it drives by the map alone"
-          : fmt::format("link of a planar laser; \"\": it drives by the map alone. By sensor or "
-                        "name it may be: {}",
-                        base::Join(links, ", ")));
+  out->AddAssumed("laser_link: " + InQuotes(links.empty() ? "" : links.front()),
+                  links.empty()
+                      ? "link of a planar laser; none is known, so it drives by the map alone"
+                      : "link of a planar laser, which it does not drive by as long as none is "
+                        "named; by sensor or name it may be: " +
+                            base::Join(links, ", "));
 }
 
 void AddController(const Robot& robot, LineWriter* out) {
   const BaseControllerParams& params = robot.profile.base_controller;
   const auto line = [&](const char* key, double value, const char* comment) {
-    out->Add(fmt::format("  {}: {}", key, value), comment);
+    out->AddAssumed(fmt::format("  {}: {}", key, value), comment);
   };
-  out->Add("base_controller:", "how the base follows commands");
-  out->Add(
+  out->AddAssumed("base_controller:", "how the base follows commands");
+  out->AddAssumed(
       "  drive: " + ToString(params.drive),
       "omnidirectional, differential or car_like; guessed from " + GuessDrive(robot.model).why);
   if (params.drive == Drive::kCarLike)
     line("min_turning_radius", params.min_turning_radius, "[m] guessed from its wheels");
-  out->Add("  limits:", "what it can do at most");
+  out->AddAssumed("  limits:", "what it can do at most");
   AddMotionSet("    ", params.limits, out);
-  line("command_timeout", params.command_timeout, "[s] without commands until it brakes; ASSUMED");
-  out->Add(fmt::format("  at_timeout: {}", params.stops_at_timeout ? "stop" : "ramp"),
-           "ramp: as for a command to stand; stop: at once; ASSUMED");
-  line("max_linear_jerk", params.max_linear_jerk, "[m/s^3] 0: acceleration may jump; ASSUMED");
-  line("command_lag", params.command_lag, "[s] from a command to its effect; ASSUMED");
-  line("loop_frequency", params.loop_frequency,
-       "[rad/s] of the velocity loop; 0: follows exactly; ASSUMED");
-  line("loop_damping", params.loop_damping, "its damping ratio; ASSUMED");
-  line("sway_compliance", params.sway_compliance,
-       "[rad s^2/m] how far it leans per acceleration; ASSUMED");
-  line("sway_frequency", params.sway_frequency, "[rad/s] of that leaning; ASSUMED");
-  line("sway_damping", params.sway_damping, "its damping ratio; ASSUMED");
+  line("command_timeout", params.command_timeout, "[s] without commands until it brakes");
+  out->AddAssumed(fmt::format("  at_timeout: {}", params.stops_at_timeout ? "stop" : "ramp"),
+                  "ramp: as for a command to stand; stop: at once");
+  line("max_linear_jerk", params.max_linear_jerk, "[m/s^3] 0: acceleration may jump");
+  line("command_lag", params.command_lag, "[s] from a command to its effect");
+  line("loop_frequency", params.loop_frequency, "[rad/s] of the velocity loop; 0: follows exactly");
+  line("loop_damping", params.loop_damping, "its damping ratio");
+  line("sway_compliance", params.sway_compliance, "[rad s^2/m] how far it leans per acceleration");
+  line("sway_frequency", params.sway_frequency, "[rad/s] of that leaning");
+  line("sway_damping", params.sway_damping, "its damping ratio");
 }
 
 void AddJoints(const Robot& robot, LineWriter* out) {
@@ -138,8 +140,10 @@ std::string WriteProfile(const std::string& path, const std::string& folder) {
                   .generic_string();
   LineWriter out;
   out.Add("", "Robot " + InQuotes(robot.model.name) +
-                  ", written from its URDF. What that does not say was derived or ASSUMED:");
-  out.Add("", "correct what is wrong. docs/tutorial.md, \"Your own robot\", says more.");
+                  ", written from its URDF. Lines that begin with '#' are what that does not say: "
+                  "ASSUMED,");
+  out.Add("", "as answers tell until they are corrected and the '#' is taken away.");
+  out.Add("", "docs/tutorial.md, \"Your own robot\", says more.");
   out.Add("urdf: " + InQuotes(TextOf(file)), "as seen from the folder of this file");
   out.Add("base_link: " + InQuotes(RootOf(robot)),
           robot.base_height > 0.0
@@ -148,16 +152,16 @@ std::string WriteProfile(const std::string& path, const std::string& folder) {
               : "the root, which is taken to lie on the floor");
   AddTray(profile, &out);
   AddLaser(robot, xml, &out);
-  out.Add("footprint: []", FootprintComment(profile.footprint));
+  out.AddAssumed("footprint: []", FootprintComment(profile.footprint));
   out.Add(fmt::format("footprint_padding: {}", profile.footprint_padding),
           "[m] kept round the footprint");
-  out.Add("motion_sets:", "how fast actions may drive, by the name that they give");
+  out.AddAssumed("motion_sets:", "how fast actions may drive, by the name that they give");
   for (const auto& [name, set] : profile.motion_sets) {
-    out.Add("  " + InQuotes(name) + ":", "`--arg " + name + "`");
+    out.AddAssumed("  " + InQuotes(name) + ":", "`--arg " + name + "`");
     AddMotionSet("    ", set, &out);
   }
-  out.Add("default_motion_set: " + InQuotes(profile.default_motion_set),
-          "for actions that name none");
+  out.AddAssumed("default_motion_set: " + InQuotes(profile.default_motion_set),
+                 "for actions that name none");
   AddController(robot, &out);
   AddJoints(robot, &out);
   return out.text();
