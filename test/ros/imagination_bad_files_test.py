@@ -193,13 +193,21 @@ class ImaginationBadFilesTest(unittest.TestCase):
                 (['imagine', *ACTION, '--seed', 'x'], '--seed'),
                 (['imagine', *ACTION, '--ranking', 'best'], 'best'),
                 (['imagine', *ACTION, '--world', '/nowhere.world'],
-                 'the running workers have their own; add --local'),
+                 'running nodes are asked about the files that they were started with: leave it away'),
                 (['imagine', *ACTION, '--uncertainty', '/nowhere.yaml'], '/nowhere.yaml'),
                 (['imagin'], 'imagin')):
             with self.subTest(arguments=arguments):
                 process = self.system.run([executable('hires'), *arguments])
                 self.assertEqual(process.wait(), 1, process.output())
                 self.assertIn(text, process.output())
+
+    def test_a_clock_that_nobody_publishes_is_said_and_not_waited_for(self):
+        self.system.main.set_param('/use_sim_time', True)  # as a simulation that ended leaves it
+        for arguments in (['imagine', *ACTION], ['achieve', 'load_tray', '--wait', '1']):
+            with self.subTest(arguments=arguments):
+                process = self.system.run([executable('hires'), *arguments])
+                self.assertEqual(process.wait(), 1, process.output())
+                self.assertIn('nobody publishes /clock', process.output())
 
 
 if __name__ == '__main__':

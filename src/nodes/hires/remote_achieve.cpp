@@ -169,6 +169,7 @@ loop::AchieveReport AchieveRemotely(const loop::AchieveQuery& query,
   loop::AchieveQuery rest = query;
   rest.wait = AwaitPublisher(kAchieveAction + std::string("/status"), query.wait, cancelled,
                              "topple.launch");
+  RequireTime(std::max(rest.wait, 1.0), cancelled);
   return Conversation(rest, on_status, cancelled).Run();
 }
 

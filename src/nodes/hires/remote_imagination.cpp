@@ -129,8 +129,10 @@ hires::imagination::Report ImagineRemotely(const hires::cli::ImagineQuery& query
                                            const std::function<bool()>& cancelled) {
   if (query.own_scene) {
     throw hires::base::ConfigError(
-        "another world, robot, catalogue or object file is named, but the running workers have "
-        "their own; add --local, or start imagination.launch with these files");
+        "a world, map, robot, area, catalogue or object file is named, but running nodes are asked "
+        "about the files that they were started with: leave it away (areas are then the <frame>s "
+        "of "
+        "their world), or add --local");
   }
   return FromMsg(AskImaginationClient(GoalOf(query), on_interim, cancelled));
 }
@@ -142,6 +144,7 @@ hires::ImagineResult AskImaginationClient(const hires::ImagineGoal& goal,
   ros::init(no_arguments, nullptr, "hires_imagine",
             ros::init_options::AnonymousName | ros::init_options::NoSigintHandler);
   RequireMaster("imagination.launch", "add --local");
+  RequireTime(kClientWait, cancelled);
   ImagineClient client(kImagineAction, true);
   RequireServer(client, cancelled);
   client.sendGoal(goal, {}, {}, [&](const hires::ImagineFeedbackConstPtr& feedback) {

@@ -2,8 +2,10 @@
 
 #include <fmt/format.h>
 #include <ros/duration.h>
+#include <ros/init.h>
 #include <ros/master.h>
 #include <ros/names.h>
+#include <ros/time.h>
 
 #include <algorithm>
 
@@ -35,6 +37,21 @@ double AwaitPublisher(const std::string& topic, double wait, const std::function
   }
   RequireMaster(launch_file);
   return std::max(0.0, give_up - hires::base::SteadyNow());
+}
+
+void RequireTime(double wait, const std::function<bool()>& cancelled) {
+  ros::start();  // listens to /clock
+  const double give_up = hires::base::SteadyNow() + wait;
+  while (!ros::Time::isValid()) {
+    if (cancelled() || hires::base::SteadyNow() > give_up) {
+      throw hires::base::ConfigError(
+          fmt::format("/use_sim_time is true at {}, and nobody publishes /clock: start what "
+                      "simulates the time, "
+                      "or, where that has ended, rosparam set use_sim_time false",
+                      ros::master::getURI()));
+    }
+    ros::WallDuration(kPollPeriod).sleep();
+  }
 }
 
 }  // namespace hires_ros

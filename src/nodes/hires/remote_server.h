@@ -20,4 +20,10 @@ void RequireMaster(const std::string& launch_file, const std::string& otherwise 
 double AwaitPublisher(const std::string& topic, double wait, const std::function<bool()>& cancelled,
                       const std::string& launch_file);
 
+/// Waits until ROS has a time, as clients of actions do for ever: where /use_sim_time is true, for
+/// a first message of /clock. Keeps ROS up from then on.  @pre ros::init
+/// @param wait  [s] at most, by the wall's clock.
+/// @throws hires::base::ConfigError if there is none by then, or when it is cancelled.
+void RequireTime(double wait, const std::function<bool()>& cancelled);
+
 }  // namespace hires_ros
