@@ -133,6 +133,31 @@ TEST(LoadMonitorTest, WhatSlidesFarEnoughHasFallen) {
   EXPECT_LT(watched.monitor.max_tilt(), 0.1);
 }
 
+TEST(LoadMonitorTest, WhatFallsIsNamedRatherThanWhatSlidBefore) {
+  world::World room = hires::test_support::Room();
+  hires::test_support::AddModel(&room, hires::test_support::Mill("puck", 0.02, 0.04, 0.3, 0.05));
+  const world::WorldState load{
+      {OnTray("puck1", "puck", kStart), OnTray("tower1", "tower", kStart, {0.0, 0.13})}};
+  RobotSimulator simulator(simulation::MakeScene(room, hires::test_support::TrayRobot()), {}, load,
+                           StandingAt(kStart), base::Rng(1));
+  world::StandingCriterion strict;
+  strict.slide = 0.02;
+  const RolloutParams params;
+  LoadMonitor monitor(&simulator, params, strict);
+  std::vector<std::string> seen;  // what was not well, in its order
+  for (int step = 0; step < 2000; ++step) {
+    robot::Command command;
+    command.base_velocity = geometry::Twist2{0.0, step < 600 ? 0.9 : 0.0, 0.0};
+    simulator.Send(command);
+    simulator.Step();
+    monitor.Look();
+    const std::string why = ToString(monitor.WhyNotWell());
+    if (!why.empty() && (seen.empty() || seen.back() != why)) seen.push_back(why);
+  }
+  EXPECT_THAT(seen, testing::ElementsAre("object_slid: puck1", "object_fell: tower1"));
+  EXPECT_EQ(monitor.falls(), 2);
+}
+
 /// A puck on the tray that chance throws while it settles: it stays there, or comes to lie or to
 /// stand elsewhere.
 struct Thrown {

@@ -101,12 +101,35 @@ HIRES_PROPERTY(ProgressWatchTest, WhatComesOnIsNoStall, ()) {
   RC_ASSERT(!Watched(drive, [](double) { return Pose2{}; }).StallAtEnd().has_value());
 }
 
+/// A drive to (10, 0) that goes to and fro over so many metres, or comes on.
+ProgressWatch Driven(double to_and_fro) {
+  const auto path =
+      std::make_shared<const std::vector<Pose2>>(std::vector<Pose2>{{0, 0, 0}, {10, 0, 0}});
+  skills::DriveView view;
+  view.path = path;
+  ProgressWatch watch;
+  for (double time = 0.0; time < 300.0; time += 0.1) {
+    const double x = to_and_fro > 0.0 ? to_and_fro * (1.0 - std::cos(0.5 * time)) : 0.02 * time;
+    watch.Note(time, {x, 0.0, 0.0}, view);
+  }
+  return watch;
+}
+
+TEST(ComesOnTest, WhoGoesToAndFroOverMetresDoesNotAndWhoIsSlowDoes) {
+  EXPECT_FALSE(Driven(1.5).ComesOn());
+  EXPECT_FALSE(Driven(1.5).StallAtEnd()) << "its place is not small";
+  EXPECT_TRUE(Driven(0.0).ComesOn());
+  EXPECT_TRUE(ProgressWatch().ComesOn());
+}
+
 TEST(StallTextTest, SaysSinceWhenWhereAndWhatMayHelp) {
   const Stall stall{Stall::Kind::kCircles, 12.04, {3.0, 1.0, 0.0}, 0.31, 0.2, -1.2};
   EXPECT_THAT(StallText(stall, {}),
               AllOf(HasSubstr("since 12.0 s it drives in circles 0.31 m from its goal"),
                     HasSubstr("x 3.00 m, y 1.00 m"), HasSubstr("xy_goal_tolerance (0.2 m)")));
-  EXPECT_THAT(UnderWayText(300.0, 7.0), AllOf(HasSubstr("7.0 m away"), HasSubstr("300 s")));
+  EXPECT_THAT(UnderWayText(300.0, 7.0, true), AllOf(HasSubstr("7.0 m away"), HasSubstr("300 s")));
+  EXPECT_THAT(UnderWayText(300.0, 7.0, false),
+              AllOf(HasSubstr("7.0 m away"), HasSubstr("more time does not help")));
 }
 
 }  // namespace

@@ -114,10 +114,11 @@ void LoadMonitor::PutBackIfDown(Object* object) {
   object->watch.Reset();
 }
 
-/// Of several that fall alike, all are named.
+/// Of several that fall alike, all are named. What falls is worse than what slid before.
 void LoadMonitor::NoteFall(const base::Failure& fall) {
   if (!fall) return;
-  if (!first_fall_) first_fall_ = fall;
+  const bool is_worse = first_fall_.code == Code::kObjectSlid && fall.code != Code::kObjectSlid;
+  if (!first_fall_ || is_worse) first_fall_ = fall;
   std::vector<std::string>& names = first_fall_.subjects;
   if (fall.code != first_fall_.code || names == fall.subjects) return;
   const auto place = std::lower_bound(names.begin(), names.end(), fall.subjects.front());

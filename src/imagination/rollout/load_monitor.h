@@ -70,7 +70,8 @@ class LoadMonitor {
   ///   object_slipped    what the hand should hold it does not, or what was put down is not where
   ///                     it was to be
   ///   object_not_released  the hand still holds what it should have put down
-  ///   object_slid       what stood on the robot, or was taken or put down, slid too far
+  ///   object_slid       what stood on the robot, or was taken or put down, slid too far, and none
+  ///                     of it fell
   ///   knocked_over      bystanders, by name
   base::Failure WhyNotWell() const;
 
@@ -122,7 +123,7 @@ class LoadMonitor {
   double tilt_{0.0}, max_tilt_{0.0};
   int falls_{0};
   base::Failure lost_;
-  base::Failure first_fall_;  // and all that fell like the first
+  base::Failure first_fall_;  // and all that fell like the first; a slide only if nothing fell
   std::string first_cause_;
 };
 

@@ -16,6 +16,7 @@ constexpr double kAtGoal = 1.0;          // [m] what goes wrong so near has to d
 constexpr double kStandingSpeed = 0.01;  // [m/s] mean
 constexpr double kStandingTurn = 0.01;   // [rad/s] mean
 constexpr double kOneSided = 0.8;        // share of all turning that is to one side: it circles
+constexpr double kComesOn = 0.2;         // of its best pace
 constexpr double kFullTurn = 2.0 * M_PI;
 
 std::string GoalText(const Stall& stall) {
@@ -32,8 +33,9 @@ std::string Remedy(const Stall& stall, const skills::MoveBaseParams& driving) {
     return stall.kind == Stall::Kind::kStands
                ? "look at what it waits for: its laser, its localisation, or who is in its way"
                : fmt::format(
-                     "what is near is too narrow for it as it drives: a slower motion set, "
-                     "or a smaller driving.costmap.inflation_radius ({:g} m)",
+                     "what is near is too narrow for it as it drives: more room there or another "
+                     "way; driving.costmap.inflation_radius ({:g} m) should not be much more than "
+                     "half the base's width",
                      driving.costmap.inflation_radius);
   }
   switch (stall.kind) {
@@ -72,6 +74,21 @@ void ProgressWatch::Note(double time, const geometry::Pose2& X_MB,
 std::optional<double> ProgressWatch::ToGoal() const {
   if (!X_MGoal_ || noted_.empty()) return std::nullopt;
   return (X_MGoal_->position() - noted_.back().X_MB.position()).norm();
+}
+
+bool ProgressWatch::ComesOn() const {
+  if (!X_MGoal_ || noted_.empty()) return true;
+  const double duration = noted_.back().time - noted_.front().time;
+  double best = 0.0;  // [m/s]
+  std::size_t before = 0;
+  for (const Noted& now : noted_) {
+    while (now.time - noted_[before].time > kShortestStall) ++before;
+    if (before == 0) continue;
+    const double way = (now.X_MB.position() - noted_[before - 1].X_MB.position()).norm();
+    best = std::max(best, way / (now.time - noted_[before - 1].time));
+  }
+  const double nearer = (X_MGoal_->position() - noted_.front().X_MB.position()).norm() - *ToGoal();
+  return nearer >= kComesOn * best * duration;
 }
 
 std::optional<Stall> ProgressWatch::StallAtEnd() const {
@@ -127,8 +144,14 @@ std::string StallText(const Stall& stall, const skills::MoveBaseParams& driving)
                      Remedy(stall, driving));
 }
 
-std::string UnderWayText(double time_limit, const std::optional<double>& to_goal) {
+std::string UnderWayText(double time_limit, const std::optional<double>& to_goal, bool comes_on) {
   const std::string left = to_goal ? fmt::format(", its goal {:.1f} m away", *to_goal) : "";
+  if (!comes_on) {
+    return fmt::format(
+        "in {:g} s it hardly came on{}: on its way it was stuck again and again; more time does "
+        "not help, more room on its way does",
+        time_limit, left);
+  }
   return fmt::format(
       "it was still under way{}; what may help: a faster motion set, or more than "
       "rollout.time_limit ({:g} s)",

@@ -33,6 +33,10 @@ class ProgressWatch {
   /// [m] from where it was last to where it should come to; nothing where it knows no goal.
   std::optional<double> ToGoal() const;
 
+  /// Whether in all it came nearer to its goal at a fifth at least of the pace that it had at best,
+  /// over 5 s: else it was stuck again and again. True where it knows no goal.
+  bool ComesOn() const;
+
  private:
   struct Noted {
     double time;
@@ -48,7 +52,7 @@ std::string WhatItDoes(const Stall& stall);
 /// The same with since when and where, and which parameter would help.
 std::string StallText(const Stall& stall, const skills::MoveBaseParams& driving);
 
-/// What to say of a drive that ran out of time but came on.
-std::string UnderWayText(double time_limit, const std::optional<double>& to_goal);
+/// What to say of a drive that ran out of time and was not stuck at its end.
+std::string UnderWayText(double time_limit, const std::optional<double>& to_goal, bool comes_on);
 
 }  // namespace hires::imagination

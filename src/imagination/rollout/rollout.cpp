@@ -167,7 +167,7 @@ class Player {
     if (stall) {
       failure->detail = StallText(*stall, driving_->params);
     } else if (failure->code == Code::kTimedOut) {
-      failure->detail = UnderWayText(params_.time_limit, progress_.ToGoal());
+      failure->detail = UnderWayText(params_.time_limit, progress_.ToGoal(), progress_.ComesOn());
     }
   }
 
@@ -212,6 +212,8 @@ class Player {
   void Conclude(const skills::Status& status, const LoadMonitor& monitor) {
     result_.action_finished = status.progress == skills::Progress::kSucceeded;
     result_.nothing_watched = !monitor.watches_something();
+    // It was over before the first sample was due: who stands at the goal already has arrived.
+    if (result_.action_finished && samples_ == 0) result_.counts += monitor.Sample();
     result_.failure = result_.action_finished ? monitor.WhyNotWell() : status.failure;
     result_.falls = monitor.falls();
     if (!down_before_.empty()) {  // what fell after that may have been thrown
@@ -265,7 +267,7 @@ RolloutResult BadStart(const RolloutSetup& setup, int index, const base::ConfigE
   base::Log(base::LogLevel::kDebug, fmt::format("rollout={} failure={} {}", index,
                                                 base::ToString(Code::kBadStart), error.what()));
   RolloutResult result;
-  result.failure = Code::kBadStart;
+  result.failure = {Code::kBadStart, {}, error.what()};
   result.final_world = setup.world_state;
   result.final_robot = setup.robot_state;
   return result;
