@@ -224,6 +224,8 @@ TEST(ReadDataErrorTest, NamesPlaceAndRemedy) {
   const std::vector<BadText> bad_texts = {
       {"(a\n (b c)\n", {"t.lisp:1:1", "line 3", "add the missing ')'"}},
       {"(a\n (b\n", {"t.lisp:2:2", "add the missing ')'"}},
+      {"(defdomain a (\n (b)\n)\n(defproblem c ())\n(defproblem d ())",
+       {"t.lisp:1:1", "add the missing ')', before line 4"}},
       {"(a))\n", {"t.lisp:1:4", "')' closes nothing"}},
       {"\n ' ", {"t.lisp:2:2", "after this quote"}},
       {"(a ')", {"t.lisp:1:5", "follows a quote"}},

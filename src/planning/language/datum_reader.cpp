@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cctype>
 #include <charconv>
+#include <optional>
 #include <utility>
 
 #include "hires/base/error.h"
@@ -88,6 +89,7 @@ class DataReader {
   std::size_t position_{0};
   Place here_{1, 1};  // of position_
   std::size_t num_data_{0};
+  std::optional<Place> definition_inside_;  // "(def" that begins a line while lists are open
   std::vector<Open> open_;
   std::vector<Datum> data_;
 };
@@ -134,8 +136,13 @@ void DataReader::FailUnclosed() const {
   FailAt(source_, open.list.place,
          is_quote ? "the text ends after this quote; write what it quotes, or take it away"
                   : fmt::format("the text ends in line {} before the list that opens here is "
-                                "closed; add the missing ')'",
-                                here_.line));
+                                "closed; add the missing ')'{}",
+                                here_.line,
+                                definition_inside_
+                                    ? fmt::format(", before line {}, where a definition begins "
+                                                  "within another",
+                                                  definition_inside_->line)
+                                    : ""));
 }
 
 // ---------------------------------------------------------------------------- blanks and comments
@@ -231,6 +238,8 @@ void DataReader::Push(Open open) {
 }
 
 void DataReader::OpenList() {
+  if (!definition_inside_ && !open_.empty() && here_.column == 1 && StartsWith("(def"))
+    definition_inside_ = here_;
   Push({});
   Next();
 }

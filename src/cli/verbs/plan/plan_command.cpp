@@ -50,7 +50,8 @@ planning::Problem ChooseProblem(const std::vector<planning::Problem>& problems,
   std::vector<std::string> names;
   for (const planning::Problem& problem : problems) names.push_back(problem.name);
   throw base::ConfigError(fmt::format("{}: has {} problems; choose one with --name: {}",
-                                      options.problem, problems.size(), base::Join(names, ", ")));
+                                      options.problem.empty() ? options.domain : options.problem,
+                                      problems.size(), base::Join(names, ", ")));
 }
 
 /// Another task from the same facts; what the problem itself wants in the end counts no more.
