@@ -6,11 +6,11 @@
 
 #include <algorithm>
 
+#include "base/files/plain_xml.h"
 #include "hires/base/error.h"
 #include "hires/base/text.h"
 #include "world/console_bridge_capture.h"
 #include "world/files/missing_files.h"
-#include "world/sdf/plain_xml.h"
 #include "world/sdf_file.h"
 #include "world/sdf_model.h"
 #include "world/xml_check.h"
@@ -138,7 +138,7 @@ std::vector<geometry::Collision> CollisionsOf(const urdf::Link& link, double fri
 
 ObjectModel LoadUrdfObject(const std::string& path, const ResourceFinder& finder) {
   const XmlLimits limits;
-  const std::string text = PlainXml(base::ReadTextFile(path, limits.max_file_bytes), path);
+  const std::string text = base::PlainXml(base::ReadTextFile(path, limits.max_file_bytes), path);
   CheckXml(text, path, limits);
   const urdf::ModelInterfaceSharedPtr model = Parse(text, path);
   if (model->links_.size() != 1) {

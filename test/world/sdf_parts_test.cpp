@@ -12,7 +12,6 @@
 #include "world/sdf/link_mass.h"
 #include "world/sdf/load_notes.h"
 #include "world/sdf/model_folders.h"
-#include "world/sdf/plain_xml.h"
 #include "world/sdf/polygon_cut.h"
 #include "world/temp_folder.h"
 
@@ -22,25 +21,6 @@ namespace {
 using testing::AllOf;
 using testing::ElementsAre;
 using testing::HasSubstr;
-
-TEST(PlainXmlTest, CommentsAndInstructionsBecomeBlanksOfTheSameSize) {
-  EXPECT_EQ(PlainXml("<!-- a\n-- b --><?xml v?>\n<a>1<!--x--></a>", "f"),
-            "      \n                 \n<a>1        </a>");
-  EXPECT_EQ(PlainXml("<!DOCTYPE a [<!ENTITY b '>'> ]><a/>", "f"), std::string(31, ' ') + "<a/>");
-  EXPECT_EQ(PlainXml("<a><![CDATA[<!-- no comment -->]]></a>", "f"),
-            "<a><![CDATA[<!-- no comment -->]]></a>");
-  EXPECT_EQ(PlainXml("\xEF\xBB\xBF<a/>", "f"), "   <a/>");
-}
-
-TEST(PlainXmlTest, WhatDoesNotEndIsNamedWithItsLine) {
-  for (const std::string bad : {"\n\n<!-- a", "\n\n<?xml", "\n\n<![CDATA[", "\n\n<!DOCTYPE [ "}) {
-    EXPECT_THAT(MessageOf<base::ConfigError>([&] { PlainXml(bad, "a.world"); }),
-                HasSubstr("a.world:3"))
-        << bad;
-  }
-  EXPECT_THAT(MessageOf<base::ConfigError>([&] { PlainXml("\xFF\xFE<", "a.world"); }),
-              HasSubstr("UTF-8"));
-}
 
 TEST(LoadNotesTest, EachKindIsSaidOnceWithCountAndFirstPlace) {
   LoadNotes notes;

@@ -9,11 +9,11 @@
 #include <filesystem>
 
 #include "base/files/nearest_file.h"
+#include "base/files/plain_xml.h"
 #include "base/trimmed.h"
 #include "hires/base/error.h"
 #include "hires/base/spelling.h"
 #include "hires/base/text.h"
-#include "world/sdf/plain_xml.h"
 #include "world/xml_check.h"
 
 namespace hires::world {
@@ -230,7 +230,7 @@ std::string ModelFileIn(const std::string& folder_of_versions, const std::string
         where, uri, folder));
   }
   tinyxml2::XMLDocument document;
-  ParseXml(PlainXml(base::ReadTextFile(config, 1u << 20), config), config, {}, &document);
+  ParseXml(base::PlainXml(base::ReadTextFile(config, 1u << 20), config), config, {}, &document);
   const tinyxml2::XMLElement* root = document.RootElement();
   const std::string named = root == nullptr ? "" : FileNamedIn(*root);
   const std::string file = folder + "/" + named;

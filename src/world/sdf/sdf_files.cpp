@@ -9,10 +9,10 @@
 #include <sdf/SDFImpl.hh>
 #include <sdf/parser.hh>
 
+#include "base/files/plain_xml.h"
 #include "hires/base/error.h"
 #include "hires/base/text.h"
 #include "world/sdf/line_printer.h"
-#include "world/sdf/plain_xml.h"
 #include "world/sdf/pose_chains.h"
 #include "world/sdf/prune_sdf.h"
 
@@ -104,10 +104,10 @@ class Walk {
     tinyxml2::XMLDocument document;
     const std::string text = base::ReadTextFile(path, limits_.max_file_bytes);
     const bool is_main = open_files_.size() == 1;
-    ParseXml(PlainXml(text, path), path, limits_, &document);
+    ParseXml(base::PlainXml(text, path), path, limits_, &document);
     if (document.RootElement() == nullptr) return {};
     if (!is_main && document.RootElement()->Name() == std::string("robot"))
-      ParseXml(PlainXml(SdfTextOfUrdf(path), path), path, limits_, &document);
+      ParseXml(base::PlainXml(SdfTextOfUrdf(path), path), path, limits_, &document);
     SdfFile file;
     file.root = document.RootElement()->Name();
     if (file.root != "sdf") return file;

@@ -1,4 +1,4 @@
-#include "world/sdf/plain_xml.h"
+#include "base/files/plain_xml.h"
 
 #include <fmt/format.h>
 
@@ -8,7 +8,7 @@
 #include "base/files/entities.h"
 #include "hires/base/error.h"
 
-namespace hires::world {
+namespace hires::base {
 namespace {
 
 /// Spaces instead of all but line breaks.
@@ -22,7 +22,7 @@ std::size_t EndOf(const char* closing, std::size_t begin, const char* what, cons
                   const std::string& path) {
   const std::size_t end = text.find(closing, begin);
   if (end != std::string::npos) return end + std::string(closing).size();
-  throw base::ConfigError(fmt::format(
+  throw ConfigError(fmt::format(
       "{}:{}: not well-formed XML: a {} begins here that does not end; close it by {}", path,
       1 + std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(begin), '\n'), what,
       closing));
@@ -43,7 +43,7 @@ bool IsAt(std::size_t at, const char* start, const std::string& text) {
 void RefuseWideText(const std::string& text, const std::string& path) {
   const bool is_wide = text.size() > 1 && (IsAt(0, "\xFF\xFE", text) || IsAt(0, "\xFE\xFF", text));
   if (!is_wide) return;
-  throw base::ConfigError(
+  throw ConfigError(
       fmt::format("{}: is text in UTF-16, wanted UTF-8; save it with that encoding", path));
 }
 
@@ -51,7 +51,7 @@ void RefuseWideText(const std::string& text, const std::string& path) {
 
 std::string PlainXml(std::string text, const std::string& path) {
   RefuseWideText(text, path);
-  base::RefuseEntities(text, path);
+  RefuseEntities(text, path);
   if (IsAt(0, "\xEF\xBB\xBF", text)) Blank(0, 3, &text);
   for (std::size_t at = text.find('<'); at != std::string::npos; at = text.find('<', at)) {
     std::size_t end = at;
@@ -70,4 +70,4 @@ std::string PlainXml(std::string text, const std::string& path) {
   return text;
 }
 
-}  // namespace hires::world
+}  // namespace hires::base
