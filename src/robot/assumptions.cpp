@@ -7,6 +7,7 @@
 #include <cmath>
 #include <set>
 
+#include "base/files/plain_xml.h"
 #include "hires/base/text.h"
 #include "hires/robot/link_bounds.h"
 #include "robot/base_height.h"
@@ -147,8 +148,9 @@ void AddMotion(const Robot& robot, const IsGiven& is_given, std::vector<std::str
 
 std::vector<std::string> LaserLinks(const RobotModel& model, const std::string& urdf_xml) {
   std::set<std::string> by_sensor;
+  const std::string xml = base::PlainXml(urdf_xml, "URDF");  // was read before
   tinyxml2::XMLDocument document;
-  if (document.Parse(urdf_xml.c_str(), urdf_xml.size()) == tinyxml2::XML_SUCCESS &&
+  if (document.Parse(xml.c_str(), xml.size()) == tinyxml2::XML_SUCCESS &&
       document.RootElement() != nullptr) {
     const tinyxml2::XMLElement* root = document.RootElement();
     for (const auto* gazebo = root->FirstChildElement("gazebo"); gazebo != nullptr;

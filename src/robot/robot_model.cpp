@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/files/plain_xml.h"
 #include "hires/base/check.h"
 #include "hires/base/error.h"
 #include "hires/base/log.h"
@@ -176,10 +177,11 @@ std::vector<std::string> LinksBelow(const RobotModel& model, const std::string& 
   return names;
 }
 
-UrdfReading ReadUrdf(const std::string& xml, const std::string& where) {
+UrdfReading ReadUrdf(const std::string& raw_xml, const std::string& where) {
+  const std::string xml = base::PlainXml(raw_xml, where);
   // The outline first: it names lines, and it refuses nesting so deep that urdfdom would crash.
   UrdfProblems problems(where);
-  const UrdfOutline outline = ReadUrdfOutline(xml, where, &problems);
+  const UrdfOutline outline = ReadUrdfOutline(xml, &problems);
   const CleanUrdf clean = CleanedUrdf(xml, outline, where, &problems);
   UrdfReading reading = ConvertUrdf(*ParseUrdfQuietly(clean.xml, where, &problems), outline,
                                     clean.shape_lines, where, &problems);

@@ -9,7 +9,6 @@
 #include <set>
 #include <vector>
 
-#include "base/files/entities.h"
 #include "hires/base/text.h"
 
 namespace hires::robot {
@@ -19,9 +18,7 @@ using tinyxml2::XMLElement;
 
 class OutlineReader {
  public:
-  OutlineReader(const std::string& xml, const std::string& where, UrdfProblems* problems)
-      : problems_(*problems) {
-    base::RefuseEntities(xml, where);
+  OutlineReader(const std::string& xml, UrdfProblems* problems) : problems_(*problems) {
     document_.Parse(xml.data(), xml.size());
     const int line = document_.ErrorLineNum();
     if (document_.ErrorID() == tinyxml2::XML_ELEMENT_DEPTH_EXCEEDED)
@@ -246,9 +243,8 @@ class OutlineReader {
 
 }  // namespace
 
-UrdfOutline ReadUrdfOutline(const std::string& xml, const std::string& where,
-                            UrdfProblems* problems) {
-  return OutlineReader(xml, where, problems).Read();
+UrdfOutline ReadUrdfOutline(const std::string& xml, UrdfProblems* problems) {
+  return OutlineReader(xml, problems).Read();
 }
 
 }  // namespace hires::robot

@@ -28,10 +28,9 @@ constexpr int kMostElements = 200000;  ///< of a URDF
 /// error names a line; the URDF parser proper knows none. What is wrong goes to `problems`, with
 /// what to leave out to read on: missing or repeated names, a joint without parent or child, an
 /// unknown or twice-carried link, loops, several roots, friction < 0.
-/// @param where  the file, for messages.
-/// @throws base::ConfigError where nothing can be read on: malformed XML, entities, no <robot>, no
-/// link, more than the numbers above.
-UrdfOutline ReadUrdfOutline(const std::string& xml, const std::string& where,
-                            UrdfProblems* problems);
+/// @param xml  plain: see base::PlainXml.
+/// @throws base::ConfigError where nothing can be read on: malformed XML, no <robot>, no link, more
+/// than the numbers above.
+UrdfOutline ReadUrdfOutline(const std::string& xml, UrdfProblems* problems);
 
 }  // namespace hires::robot

@@ -2,11 +2,13 @@
 
 #include <gmock/gmock.h>
 
+#include <algorithm>
 #include <cstdlib>
 #include <filesystem>
 
 #include "hires/base/text.h"
 #include "hires/robot/load_robot.h"
+#include "hires/robot/robot_model.h"
 #include "support/log_catcher.h"
 #include "support/messages.h"
 #include "support/temporary_folder.h"
@@ -121,6 +123,72 @@ TEST_F(XacroTest, WhatIsExpandedAlreadyNeedsNone) {
   EXPECT_EQ(LoadAnyRobot(path).model.name, "r");
   EXPECT_THAT(ConfigErrorOf([&] { LoadAnyRobot(path + " l:=1"); }),
               AllOf(HasSubstr("is no xacro file"), HasSubstr("l:=1")));
+}
+
+/// A robot whose parts have `inside` where it is asked for.
+std::string Bot(const std::string& in_robot, const std::string& in_link = "",
+                const std::string& in_joint = "") {
+  return "<robot name='r'><link name='a'><collision><geometry><sphere radius='1'/></geometry>"
+         "</collision>" +
+         in_link + "</link><link name='b'/><joint name='j' type='fixed'><parent link='a'/>" +
+         "<child link='b'/>" + in_joint + "</joint>" + in_robot + "</robot>";
+}
+
+TEST_F(XacroTest, MacrosThatNoRobotIsReadFromNeedNone) {
+  HideXacro();
+  for (const std::string macro : {"$(find p)/c.yaml", "$(env HOME)", "$(arg a)", "${l}"}) {
+    const std::string text = "<parameters a='" + macro + "'>" + macro + "</parameters>";
+    for (const std::string& urdf :
+         {Bot("<gazebo><plugin name='p' filename='x.so'>" + text + "</plugin></gazebo>"),
+          Bot("<gazebo reference='a'><material>" + macro +
+              "</material><sensor type='ray' name='s'>" + text + "</sensor></gazebo>"),
+          Bot("<transmission name='t'>" + text + "</transmission><ros2_control>" + text +
+              "</ros2_control><material name='" + macro + "'/>"),
+          Bot("", "<visual><geometry><mesh filename='" + macro + "'/></geometry></visual>"),
+          Bot("", "",
+              "<safety_controller k_velocity='" + macro + "'/><dynamics>" + text +
+                  "</dynamics>")}) {
+      EXPECT_EQ(LoadRobotModel(folder_.Write("done.urdf", urdf)).links.size(), 2u) << urdf;
+    }
+    for (const std::string& urdf :
+         {Bot("<gazebo reference='a'><mu1>" + macro + "</mu1></gazebo>"),
+          Bot("<gazebo reference='" + macro + "'/>"),
+          Bot("<gazebo reference='a'><sensor type='" + macro + "'/></gazebo>"),
+          Bot("", "<collision><geometry><mesh filename='" + macro + "'/></geometry></collision>"),
+          Bot("", "<inertial><mass value='" + macro + "'/></inertial>"), Bot("", "<xacro:mass/>"),
+          Bot("", "", "<origin xyz='" + macro + " 0 0'/>"), Bot("<xacro:arm/>")}) {
+      EXPECT_THAT(ConfigErrorOf([&] { LoadAnyRobot(folder_.Write("raw.urdf", urdf)); }),
+                  HasSubstr("is a xacro file"))
+          << urdf;
+    }
+  }
+}
+
+TEST_F(XacroTest, WhateverStandsBeforeTheDeclarationIsLeftOut) {
+  HideXacro();
+  const std::string declaration = "<?xml version='1.0' encoding='UTF-8'?>\n";
+  for (const std::string bom : {"", "\xEF\xBB\xBF"}) {
+    for (const std::string before : {"", "\n\n", " \t\r\n", "<!-- ${l} -->",
+                                     "<!-- a -->\n<!-- b\n -->\n", "<!DOCTYPE robot>\n"}) {
+      const std::string path = folder_.Write("c.urdf", bom + before + declaration + Bot(""));
+      EXPECT_EQ(LoadAnyRobot(path).model.name, "r") << before;
+      EXPECT_EQ(LoadRobotModel(path).name, "r") << before;
+      const std::string wrong = bom + before + declaration + Bot("<link name='a'/>");
+      const auto line = 1 + std::count(wrong.begin(), wrong.end(), '\n');
+      EXPECT_THAT(
+          ConfigErrorOf([&] { LoadAnyRobot(folder_.Write("d.urdf", wrong)); }),
+          AllOf(HasSubstr("'a' is there twice"), HasSubstr("line " + std::to_string(line))));
+    }
+  }
+}
+
+TEST_F(XacroTest, TextThatIsNoUtf8OrDoesNotEndIsNamed) {
+  for (const std::string& start : {std::string("\xFF\xFE<\0", 4), std::string("\xFE\xFF\0<", 4)}) {
+    EXPECT_THAT(ConfigErrorOf([&] { LoadAnyRobot(folder_.Write("w.urdf", start)); }),
+                AllOf(HasSubstr("w.urdf"), HasSubstr("UTF-16"), HasSubstr("save it")));
+  }
+  EXPECT_THAT(ConfigErrorOf([&] { LoadAnyRobot(folder_.Write("e.urdf", "\n<!-- " + Bot(""))); }),
+              HasSubstr("e.urdf:2: not well-formed XML: a comment begins here"));
 }
 
 TEST(SplitArgumentsTest, TakesArgumentsFromTheEndAlone) {

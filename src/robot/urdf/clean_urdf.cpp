@@ -22,6 +22,15 @@ namespace {
 
 using tinyxml2::XMLElement;
 
+/// By parent: the elements that are kept.
+const std::map<std::string, std::set<std::string>>& Kept() {
+  static const std::map<std::string, std::set<std::string>> kept{
+      {"robot", {"link", "joint"}},
+      {"link", {"inertial", "collision"}},
+      {"joint", {"origin", "axis", "parent", "child", "limit", "mimic"}}};
+  return kept;
+}
+
 constexpr double kFarthestCentre = 1e3;  // [m] of a centre of mass: beyond lies a slip of units
 
 /// `count` numbers and nothing else.
@@ -123,7 +132,7 @@ class UrdfCleaner {
 
   CleanUrdf Clean() {
     robot_->DeleteAttribute("version");  // newer ones are refused, whatever stands in them
-    DeleteAllBut({"link", "joint"}, robot_);
+    DeleteAllBut(Kept().at("robot"), robot_);
     DeleteThose("link", outline_.useless_links);
     DeleteThose("joint", outline_.useless_joints);
     JoinRoots();
@@ -229,7 +238,7 @@ class UrdfCleaner {
   }
 
   void CleanLink(XMLElement* link) {
-    DeleteAllBut({"inertial", "collision"}, link);
+    DeleteAllBut(Kept().at("link"), link);
     if (XMLElement* inertial = link->FirstChildElement("inertial")) CheckInertial(link, inertial);
     std::vector<int>& lines = clean_.shape_lines[NameOf(*link)];
     const std::string owner = fmt::format("link '{}'", NameOf(*link));
@@ -319,7 +328,7 @@ class UrdfCleaner {
   }
 
   void CleanJoint(XMLElement* joint) {
-    DeleteAllBut({"origin", "axis", "parent", "child", "limit", "mimic"}, joint);
+    DeleteAllBut(Kept().at("joint"), joint);
     const std::string owner = fmt::format("joint '{}'", NameOf(*joint));
     const char* type = joint->Attribute("type");
     const std::string kind = type == nullptr ? "" : type;
@@ -375,6 +384,11 @@ class UrdfCleaner {
 };
 
 }  // namespace
+
+bool IsKept(const std::string& parent, const std::string& child) {
+  const auto kept = Kept().find(parent);
+  return kept == Kept().end() || kept->second.count(child) > 0;
+}
 
 CleanUrdf CleanedUrdf(const std::string& xml, const UrdfOutline& outline, const std::string& where,
                       UrdfProblems* problems) {

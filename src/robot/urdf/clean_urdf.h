@@ -16,6 +16,10 @@ struct CleanUrdf {
   std::map<std::string, std::vector<int>> shape_lines;
 };
 
+/// Whether what CleanedUrdf makes has such elements of a "robot", "link" or "joint"; all of them
+/// that lie deeper, too.
+bool IsKept(const std::string& parent, const std::string& child);
+
 /// Leaves out what no question here needs and the parser would refuse a robot for: looks,
 /// transmissions, plugins, sensors, calibration, masses and inertias that no body can have. Joints
 /// that float or move in a plane are fixed, as the base moves by itself; those without limits that
@@ -24,7 +28,8 @@ struct CleanUrdf {
 /// spheres. Logs a warning for each kind of what is wrong, with all names, lines and number.
 /// What is wrong (numbers that are none, unknown shapes and kinds of joints) goes to `problems`,
 /// and something that can be read takes its place, so that the rest is judged, too.
-/// @param xml  a URDF that ReadUrdfOutline can read, and `outline` what it says.
+/// @param xml  a plain URDF (see base::PlainXml) that ReadUrdfOutline can read, and `outline` what
+/// it says.
 /// @param where  the file, for messages.
 CleanUrdf CleanedUrdf(const std::string& xml, const UrdfOutline& outline, const std::string& where,
                       UrdfProblems* problems);

@@ -15,6 +15,6 @@ struct UrdfReading {
 };
 
 /// As ParseRobotModel, with what it would log of units.
-UrdfReading ReadUrdf(const std::string& xml, const std::string& where);
+UrdfReading ReadUrdf(const std::string& raw_xml, const std::string& where);
 
 }  // namespace hires::robot

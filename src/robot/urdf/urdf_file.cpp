@@ -7,9 +7,11 @@
 #include <filesystem>
 
 #include "base/captured_program.h"
+#include "base/files/plain_xml.h"
 #include "hires/base/error.h"
 #include "hires/base/log.h"
 #include "hires/base/text.h"
+#include "robot/urdf/clean_urdf.h"
 
 namespace hires::robot {
 namespace {
@@ -36,15 +38,19 @@ bool HasMacro(const char* text) {
   return words.find("${") != std::string::npos || words.find("$(") != std::string::npos;
 }
 
-/// Goes through the tree until it meets what xacro would expand. Comments are no part of the walk.
+/// Goes through what a robot is read from until it meets what xacro would expand: looks, plugins,
+/// transmissions and comments are no part of the walk.
 class MacroFinder : public tinyxml2::XMLVisitor {
  public:
   bool VisitEnter(const tinyxml2::XMLElement& element,
                   const tinyxml2::XMLAttribute* attribute) override {
-    has_macro = has_macro || std::string(element.Name()).rfind(kPrefix, 0) == 0;
+    const std::string name = element.Name();
+    const bool is_macro = name.rfind(kPrefix, 0) == 0;
+    if (!is_macro && !IsRead(element, name)) return false;
+    has_macro = has_macro || is_macro;
     for (; attribute != nullptr; attribute = attribute->Next())
       has_macro = has_macro || HasMacro(attribute->Value());
-    return !has_macro;
+    return !has_macro && name != "sensor";
   }
   bool Visit(const tinyxml2::XMLText& text) override {
     has_macro = has_macro || HasMacro(text.Value());
@@ -52,6 +58,18 @@ class MacroFinder : public tinyxml2::XMLVisitor {
   }
 
   bool has_macro{false};
+
+ private:
+  /// Of <gazebo>, the link, its friction and whether a sensor is a laser.
+  static bool IsRead(const tinyxml2::XMLElement& element, const std::string& name) {
+    const tinyxml2::XMLNode* parent = element.Parent();
+    const bool is_root = parent == nullptr || parent->ToElement() == nullptr;
+    if (is_root) return true;
+    const std::string above = parent->ToElement()->Name();
+    if (above == "robot" && name == "gazebo") return true;
+    if (above == "gazebo") return name == "mu1" || name == "mu2" || name == "sensor";
+    return IsKept(above, name);
+  }
 };
 
 /// In double quotes where a shell would take it apart.
@@ -125,6 +143,15 @@ std::string Expanded(const UrdfFile& file) {
   return result.out;
 }
 
+/// xacro itself puts in what entities stand for, so that they are no reason to refuse its files.
+std::string PlainOrSame(const std::string& text, const std::string& path) {
+  try {
+    return base::PlainXml(text, path);
+  } catch (const base::ConfigError&) {
+    return text;
+  }
+}
+
 }  // namespace
 
 UrdfFile SplitArguments(const std::string& path_and_arguments) {
@@ -142,8 +169,9 @@ UrdfFile SplitArguments(const std::string& path_and_arguments) {
 
 bool IsXacro(const std::string& text, const std::string& path) {
   if (HasXacroEnding(path)) return true;
+  const std::string plain = PlainOrSame(text, path);
   tinyxml2::XMLDocument document;
-  if (document.Parse(text.data(), text.size()) != tinyxml2::XML_SUCCESS) return false;
+  if (document.Parse(plain.data(), plain.size()) != tinyxml2::XML_SUCCESS) return false;
   MacroFinder finder;
   document.Accept(&finder);
   return finder.has_macro;
@@ -163,7 +191,7 @@ UrdfFile UrdfOf(const std::string& profile_path, const RobotProfile& profile) {
 }
 
 std::string ReadUrdfFile(const UrdfFile& file) {
-  std::string text = base::ReadTextFile(file.path, kMaxUrdfBytes);
+  const std::string text = base::ReadTextFile(file.path, kMaxUrdfBytes);
   if (IsXacro(text, file.path)) return Expanded(file);
   if (file.arguments.empty()) return text;
   throw base::ConfigError(

@@ -24,7 +24,8 @@ std::string TextOf(const UrdfFile& file);
 UrdfFile UrdfOf(const std::string& profile_path, const RobotProfile& profile);
 
 /// Whether a robot's text still has to be expanded: it is in a file .xacro, or has elements xacro:
-/// or ${...} or $(...) outside of comments; what was expanded may keep its xmlns:xacro.
+/// or ${...} or $(...) where a robot is read from: not in comments, looks, transmissions or
+/// plugins, whose files a simulator looks for. What was expanded may keep its xmlns:xacro.
 bool IsXacro(const std::string& text, const std::string& path);
 
 /// The URDF in a file. Of a xacro file it is what the program `xacro` on PATH makes of it, which
