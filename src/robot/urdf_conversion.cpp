@@ -176,10 +176,6 @@ class ModelBuilder {
   /// Nothing where it cannot be read, which is told.
   std::optional<geometry::Collision> ToCollision(const std::string& link,
                                                  const urdf::Collision& source) {
-    if (!source.geometry) {
-      TellLink(link, "a <collision> has no <geometry>; add a shape");
-      return std::nullopt;
-    }
     geometry::Collision collision;
     collision.name = source.name;
     collision.X_BS = ToPose(source.origin);

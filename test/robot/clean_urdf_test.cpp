@@ -3,6 +3,9 @@
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 
+#include <algorithm>
+#include <map>
+
 #include "hires/base/rng.h"
 #include "hires/base/text.h"
 #include "hires/robot/robot_model.h"
@@ -17,6 +20,7 @@ using hires::test_support::ConfigErrorOf;
 using hires::test_support::LogCatcher;
 using hires::test_support::Rounds;
 using ::testing::AllOf;
+using ::testing::Contains;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 using ::testing::SizeIs;
@@ -166,13 +170,63 @@ TEST(CleanUrdfTest, ShapesThatNobodyKnowsAreToldAllAtOnce) {
                     HasSubstr("<torus>"), HasSubstr("; line 3"), HasSubstr("capsule or mesh")));
 }
 
+/// Shapes, how many of them stay, and the word that says why one is left out.
+struct Shaped {
+  const char* text;
+  int num_kept;
+  const char* key;
+};
+
+TEST(CleanUrdfTest, CollisionsThatOccupyNothingAreLeftOutAndToldByKind) {
+  const std::vector<Shaped> all{
+      {"<geometry><box size='1 0.5 2'/></geometry>", 1, ""},
+      {"<geometry><capsule radius='0.1' length='1'/></geometry>", 3, ""},
+      {"<geometry><sphere radius='1e-9'/></geometry>", 1, ""},
+      {"", 0, "without_shape"},
+      {"<geometry/>", 0, "without_shape"},
+      {"<origin xyz='1 0 0'/><geometry>\n</geometry>", 0, "without_shape"},
+      {"<geometry><box size='0 0 0'/></geometry>", 0, "without_size"},
+      {"<geometry><box size='0 2.5 0.0'/></geometry>", 0, "without_size"},
+      {"<geometry><sphere radius='0'/></geometry>", 0, "without_size"},
+      {"<geometry><cylinder radius='0.0' length='0'/></geometry>", 0, "without_size"},
+      {"<geometry><cylinder radius='0' length='3'/></geometry>", 0, "without_size"},
+      {"<geometry><capsule radius='0' length='1'/></geometry>", 0, "without_size"}};
+  base::Rng rng(9);
+  for (int round = 0; round < Rounds(200); ++round) {
+    std::string xml = "<robot name='r'>\n<link name='a'>\n";
+    std::map<std::string, std::pair<int, int>> told;  // by key: first line, how many
+    std::size_t num_kept = 0;
+    int line = 3;
+    for (int i = rng.Index(8); i > 0; --i) {
+      const Shaped& one = all[rng.Index(static_cast<int>(all.size()))];
+      num_kept += one.num_kept;
+      if (one.num_kept == 0) ++told.emplace(one.key, std::make_pair(line, 0)).first->second.second;
+      const std::string text = fmt::format("<collision>{}</collision>\n", one.text);
+      line += static_cast<int>(std::count(text.begin(), text.end(), '\n'));
+      xml += text;
+    }
+    const LogCatcher log(base::LogLevel::kWarn);
+    const RobotModel model = ParseRobotModel(xml + "</link></robot>", "r.urdf");
+    EXPECT_EQ(model.links[0].collisions.size(), num_kept) << xml;
+    ASSERT_THAT(log.lines, SizeIs(told.size()));
+    for (const auto& [key, place] : told) {
+      EXPECT_THAT(
+          log.lines,
+          Contains(AllOf(HasSubstr(key + "=a"), HasSubstr(fmt::format("count={} ", place.second)),
+                         HasSubstr(fmt::format("first=\"line {}", place.first)))))
+          << xml;
+    }
+  }
+}
+
 TEST(CleanUrdfTest, LinesOfShapesAreThoseOfTheFile) {
   UrdfProblems problems("r.urdf");
   const CleanUrdf clean = CleanedUrdf(
       "<robot name='r'>\n<link name='a'>\n<collision><geometry>\n<capsule radius='1' length='2'/>"
-      "</geometry></collision>\n<collision/>\n</link></robot>",
+      "</geometry></collision>\n<collision/>\n<collision><geometry><sphere "
+      "radius='1'/></geometry></collision></link></robot>",
       {}, "r.urdf", &problems);
-  EXPECT_THAT(clean.shape_lines.at("a"), ::testing::ElementsAre(4, 4, 4, 5));
+  EXPECT_THAT(clean.shape_lines.at("a"), ::testing::ElementsAre(4, 4, 4, 6));
 }
 
 }  // namespace

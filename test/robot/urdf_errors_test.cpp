@@ -103,7 +103,6 @@ std::vector<BadUrdf> BadUrdfs() {
       {"MimicsItself",
        Joint("revolute", std::string(kLimit) + "<mimic joint=\"j\"/>"),
        {"joint 'j'", "name the joint that leads"}},
-      {"CollisionWithoutShape", Collision(""), {"bad.urdf"}},
       {"UnknownShape", Collision("<geometry><cone/></geometry>"), {"no valid URDF", "cone"}},
       {"BoxWithoutHeight",
        Collision("<geometry><box size=\"1 1 0\"/></geometry>"),

@@ -4,6 +4,7 @@
 #include <tinyxml2.h>
 
 #include <Eigen/Cholesky>
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <locale>
@@ -49,6 +50,18 @@ std::optional<double> NumberIn(const XMLElement* element, const char* attribute)
       element == nullptr ? std::nullopt : NumbersIn(element->Attribute(attribute), 1);
   if (!numbers || !std::isfinite(numbers->front())) return std::nullopt;
   return numbers->front();
+}
+
+/// Whether a shape is a point or a line. A plate of no height is another thing: something lies on
+/// it.
+bool IsOfNoSize(const XMLElement& shape) {
+  const std::string kind = shape.Name();
+  if (kind == "box") {
+    const auto size = NumbersIn(shape.Attribute("size"), 3);
+    return size && std::count(size->begin(), size->end(), 0.0) >= 2;
+  }
+  return (kind == "sphere" || kind == "cylinder" || kind == "capsule") &&
+         NumberIn(&shape, "radius") == 0.0;
 }
 
 /// Of an element's <origin>; the identity where it has none.
@@ -242,14 +255,13 @@ class UrdfCleaner {
     if (XMLElement* inertial = link->FirstChildElement("inertial")) CheckInertial(link, inertial);
     std::vector<int>& lines = clean_.shape_lines[NameOf(*link)];
     const std::string owner = fmt::format("link '{}'", NameOf(*link));
+    LeaveOutNothing(link);
     for (XMLElement* collision = link->FirstChildElement("collision"); collision != nullptr;
          collision = collision->NextSiblingElement("collision")) {
       CheckOrigin(collision, owner);
-      XMLElement* geometry = collision->FirstChildElement("geometry");
-      XMLElement* shape = geometry == nullptr ? nullptr : geometry->FirstChildElement();
-      const int line = (shape == nullptr ? collision : shape)->GetLineNum();
+      XMLElement* shape = collision->FirstChildElement("geometry")->FirstChildElement();
+      const int line = shape->GetLineNum();
       lines.push_back(line);
-      if (shape == nullptr) continue;
       const std::string kind = shape->Name();
       if (kind == "capsule") {
         XMLElement* last = SplitCapsule(link, collision);
@@ -261,6 +273,22 @@ class UrdfCleaner {
                                         owner, kind));
         Stand(shape);
       }
+    }
+  }
+
+  /// Collisions that occupy nothing.
+  void LeaveOutNothing(XMLElement* link) {
+    for (XMLElement* collision = link->FirstChildElement("collision"); collision != nullptr;) {
+      XMLElement* next = collision->NextSiblingElement("collision");
+      const XMLElement* geometry = collision->FirstChildElement("geometry");
+      const XMLElement* shape = geometry == nullptr ? nullptr : geometry->FirstChildElement();
+      if (shape == nullptr) {
+        shapeless_.Add(*collision, NameOf(*link), "");
+      } else if (IsOfNoSize(*shape)) {
+        sizeless_.Add(*shape, NameOf(*link), shape->Name());
+      }
+      if (shape == nullptr || IsOfNoSize(*shape)) link->DeleteChild(collision);
+      collision = next;
     }
   }
 
@@ -369,6 +397,9 @@ class UrdfCleaner {
   void Tell() const {
     inertials_.Tell(where_, "impossible_inertia",
                     "no body has such masses or inertias; nothing here uses them");
+    shapeless_.Tell(where_, "without_shape",
+                    "a <collision> whose <geometry> has no shape is left out");
+    sizeless_.Tell(where_, "without_size", "a shape of size 0 occupies nothing and is left out");
     loose_.Tell(where_, "taken_as_fixed", "the base moves by itself, such joints do not");
     unlimited_.Tell(where_, "held_at_0",
                     "a joint that turns or slides needs a <limit>, which these have not");
@@ -380,7 +411,7 @@ class UrdfCleaner {
   tinyxml2::XMLDocument document_;
   XMLElement* robot_{nullptr};
   CleanUrdf clean_;
-  Told inertials_, loose_, unlimited_;
+  Told inertials_, shapeless_, sizeless_, loose_, unlimited_;
 };
 
 }  // namespace
