@@ -49,6 +49,28 @@ void CheckScale(const std::string& path, const Eigen::Vector3d& scale) {
                          scale.x(), scale.y(), scale.z()));
 }
 
+/// Files that are none of a mesh's, and what they are.
+void RefuseOtherFiles(const std::string& path, const std::string& bytes) {
+  if (bytes.find_first_not_of(" \t\r\n") == std::string::npos)
+    Fail(path, "is empty, wanted a mesh; export it again");
+  if (bytes.rfind("version https://git-lfs", 0) == 0) {
+    Fail(path, "is a pointer of Git LFS and not the mesh; run `git lfs pull` in its repository");
+  }
+}
+
+/// What the importer says, with the file's name for the one that it makes up for bytes.
+std::string Said(const Assimp::Importer& importer, const std::string& path,
+                 const std::string& format) {
+  const std::string made_up = "$$$___magic___$$$." + format;
+  const std::string name = std::filesystem::path(path).filename().string();
+  std::string said = importer.GetErrorString();
+  for (std::size_t at = said.find(made_up); at != std::string::npos;
+       at = said.find(made_up, at + name.size())) {
+    said.replace(at, made_up.size(), name);
+  }
+  return said;
+}
+
 /// Polygons count as what they are cut into.
 std::size_t NumTrianglesIn(const aiScene& scene) {
   std::size_t count = 0;
@@ -89,7 +111,7 @@ const aiScene& Import(Assimp::Importer* importer, const std::string& path,
         aiProcess_JoinIdenticalVertices | aiProcess_FindDegenerates | aiProcess_SortByPType);
   }
   if (scene == nullptr) {
-    Fail(path, fmt::format("no valid mesh: {}; export it again", importer->GetErrorString()));
+    Fail(path, fmt::format("no valid mesh: {}; export it again", Said(*importer, path, format)));
   }
   return *scene;
 }
@@ -125,8 +147,10 @@ void Visit(const aiScene& scene, const aiNode& node, aiMatrix4x4 X_WParent, Sear
   for (unsigned i = 0; i < node.mNumMeshes; ++i) {
     aiMesh& part = *scene.mMeshes[node.mMeshes[i]];
     const std::string own = part.mName.C_Str();
-    search->names.push_back(name);
-    if (own != name) search->names.push_back(own);
+    for (const std::string& met : {name, own}) {
+      std::vector<std::string>& names = search->names;
+      if (std::find(names.begin(), names.end(), met) == names.end()) names.push_back(met);
+    }
     if (name != search->wanted && own != search->wanted) continue;
     const std::size_t first = search->mesh.vertices.size();
     Append(part, Eigen::Vector3d::Ones(), &search->mesh);
@@ -176,6 +200,7 @@ TriangleMesh ReadMesh(const std::string& path, const Eigen::Vector3d& scale,
   const std::string format = FormatOf(path);
   CheckScale(path, scale);
   const std::string bytes = base::ReadTextFile(path, kMaxBytes);
+  RefuseOtherFiles(path, bytes);
   Assimp::Importer importer;
   const bool is_whole = submesh.name.empty();
   const aiScene& scene = Import(&importer, path, format, bytes, is_whole);

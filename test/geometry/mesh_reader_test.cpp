@@ -13,7 +13,9 @@ namespace hires::geometry::mesh_reader_test {
 namespace {
 
 using ::testing::AllOf;
+using ::testing::ContainsRegex;
 using ::testing::HasSubstr;
+using ::testing::Not;
 using ::testing::ThrowsMessage;
 
 /// A tetrahedron with corners at the origin and at 1 m on each axis: volume 1/6 m^3.
@@ -193,6 +195,33 @@ TEST_F(MeshReader, RefusesMalformedFiles) {
     EXPECT_THROW(ReadMesh(Write(name, "<rubbish")), base::ConfigError) << name;
     EXPECT_THROW(ReadMesh(Write(name, "")), base::ConfigError) << name;
   }
+}
+
+TEST_F(MeshReader, EmptyFilesAndPointersOfGitLfsAreCalledSo) {
+  for (const char* name : {"a.stl", "b.STL", "c.dae", "d.obj"}) {
+    for (const char* empty : {"", "\n", " \r\n\t"}) {
+      EXPECT_THAT([&] { ReadMesh(Write(name, empty)); },
+                  ThrowsMessage<base::ConfigError>(AllOf(HasSubstr(name), HasSubstr("is empty"))));
+    }
+    EXPECT_THAT(
+        [&] {
+          ReadMesh(
+              Write(name, "version https://git-lfs.github.com/spec/v1\noid sha256:0\nsize 7\n"));
+        },
+        ThrowsMessage<base::ConfigError>(
+            AllOf(HasSubstr(name), HasSubstr("pointer of Git LFS"), HasSubstr("git lfs pull"))));
+    EXPECT_THAT([&] { ReadMesh(Write(name, "rubbish")); },
+                ThrowsMessage<base::ConfigError>(AllOf(HasSubstr(name), Not(HasSubstr("magic")))));
+  }
+}
+
+TEST_F(MeshReader, UnknownSubmeshListsEachNameOnce) {
+  const std::string path =
+      Write("two.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\no left\nf 1 2 3\no right\nf 1 3 2\n");
+  const auto wanted = [&] { ReadMesh(path, {1.0, 1.0, 1.0}, {"middle", false}); };
+  EXPECT_THAT(wanted, ThrowsMessage<base::ConfigError>(AllOf(
+                          HasSubstr("submesh 'middle' is unknown"), ContainsRegex("left.*right"),
+                          Not(ContainsRegex("left.*left")), Not(ContainsRegex("right.*right")))));
 }
 
 TEST_F(MeshReader, RefusesIndexBeyondTheCorners) {
