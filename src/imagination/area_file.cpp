@@ -4,51 +4,42 @@
 #include <yaml-cpp/yaml.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
-#include <initializer_list>
 #include <map>
 #include <optional>
+#include <set>
 
 #include "hires/base/error.h"
 #include "hires/base/log.h"
 #include "hires/base/short_text.h"
 #include "hires/base/text.h"
+#include "imagination/area_keys.h"
 
 namespace hires::imagination {
 namespace {
 
+using area_keys::Find;
+using area_keys::NumbersOf;
+
 constexpr double kFarthest = 1000.0;  // [m] of an area, as in an SDF world
-constexpr int kDeepest = 16;          // maps and lists in one another
-constexpr int kMostNodes = 200'000;   // an alias may stand for many
-constexpr std::size_t kMostAreas = 2000;
+constexpr double kLengthSlack = 0.1;  // of a quaternion, which people round
+constexpr char kNoTurn[] = "goals without an orientation have a yaw of 0";
+constexpr int kDeepest = 16;         // maps and lists in one another
+constexpr int kMostNodes = 200'000;  // an alias may stand for many
+constexpr std::size_t kMostAreas = 2000, kMostNamed = 10;
 
 int LineOf(const YAML::Node& node) { return node.Mark().line + 1; }
 
-/// The value of the first of these keys that is there; else an undefined node.
-YAML::Node Find(const YAML::Node& map, std::initializer_list<const char*> keys) {
-  for (const char* key : keys) {
-    if (const YAML::Node value = map[key]) return value;
-  }
-  return YAML::Node(YAML::NodeType::Undefined);
-}
+/// Of a turn about z alone, where its numbers are all there is of it.
+struct Quaternion {
+  double x, y, z, w;
 
-/// The numbers of a list, or nothing where it has anything else.
-std::vector<double> NumbersOf(const YAML::Node& list) {
-  std::vector<double> numbers;
-  for (const YAML::Node& item : list) {
-    double number = 0.0;
-    if (!item.IsScalar() || !YAML::convert<double>::decode(item, number) || !std::isfinite(number))
-      return {};
-    numbers.push_back(number);
-  }
-  return numbers;
-}
-
-/// About z, of a quaternion of any length; nothing where all its numbers are 0.
-std::optional<double> YawOf(double x, double y, double z, double w) {
-  if (x == 0.0 && y == 0.0 && z == 0.0 && w == 0.0) return std::nullopt;
-  return std::atan2(2.0 * (w * z + x * y), w * w + x * x - y * y - z * z);
-}
+  double length() const { return std::sqrt(x * x + y * y + z * z + w * w); }
+  double yaw() const { return std::atan2(2.0 * (w * z + x * y), w * w + x * x - y * y - z * z); }
+  /// How far up the robot's z axis points, from -1 to 1.
+  double up() const { return 1.0 - 2.0 * (x * x + y * y) / (length() * length()); }
+};
 
 bool LooksLikePose(const YAML::Node& node) {
   if (node.IsSequence()) {
@@ -56,8 +47,9 @@ bool LooksLikePose(const YAML::Node& node) {
     return size > 0 && node[0].IsScalar() && NumbersOf(node).size() == size;
   }
   if (!node.IsMap()) return false;
-  return (node["x"] && node["y"]) || node["position"] ||
-         (node["pose"] && (node["pose"].IsSequence() || LooksLikePose(node["pose"])));
+  if (area_keys::FlatPositionIn(node)[0] || area_keys::PositionIn(node)) return true;
+  const YAML::Node pose = Find(node, {"pose"});
+  return pose && (pose.IsSequence() || LooksLikePose(pose));
 }
 
 class AreaReader {
@@ -73,6 +65,8 @@ class AreaReader {
       base::Log(base::LogLevel::kWarn,
                 fmt::format("{}:{}: {} ({} in all)", path_, places.first, what, places.count));
     }
+    passed_keys_.Tell(path_, "which say nothing of a goal; wanted x, y [m] and yaw [rad]");
+    passed_parts_.Tell(path_, "which by their names hold no goals");
     if (areas_.empty() && errors_.empty()) {
       errors_.push_back(fmt::format(
           "{}: has no goal; wanted name: [x, y, yaw] [m, m, rad], or poses with position and "
@@ -86,6 +80,27 @@ class AreaReader {
  private:
   struct Places {
     int first, count;
+  };
+
+  /// Keys that are left aside, told in one sentence.
+  struct Passed {
+    std::vector<std::string> keys;
+    int first{0};
+
+    void Add(const std::string& key, int line) {
+      if (keys.empty()) first = line;
+      if (std::find(keys.begin(), keys.end(), key) == keys.end()) keys.push_back(key);
+    }
+    void Tell(const std::string& path, const char* why) const {
+      if (keys.empty()) return;
+      const std::size_t num_named = std::min(keys.size(), kMostNamed);
+      const std::string more =
+          keys.size() > num_named ? fmt::format(" and {} more", keys.size() - num_named) : "";
+      base::Log(
+          base::LogLevel::kWarn,
+          fmt::format("{}:{}: passes over '{}'{}, {}", path, first,
+                      base::Join({keys.begin(), keys.begin() + num_named}, "', '"), more, why));
+    }
   };
 
   void Fail(int line, const std::string& what) {
@@ -127,30 +142,57 @@ class AreaReader {
     const std::string own = OwnName(map, name);
     // What a goal is wrapped in says nothing; beside it may stand what only looks like goals.
     for (const char* wrapper : {"target_pose", "goal_pose", "pose", "goal", "node", "waypoint"}) {
-      const YAML::Node inner = map[wrapper];
+      const YAML::Node inner = Find(map, {wrapper});
       if (inner && inner.IsMap()) return Walk(inner, own, depth + 1);
+    }
+    std::set<std::string> done{"header", "info"};
+    for (const area_keys::ParallelLists& lists : area_keys::ParallelListsIn(map)) {
+      AddParallel(lists);
+      done.insert(lists.keys.begin(), lists.keys.end());
     }
     for (const auto& entry : map) {
       if (!entry.second.IsMap() && !entry.second.IsSequence()) continue;
       const std::string key = entry.first.IsScalar() ? entry.first.Scalar() : "";
-      if (key != "header" && key != "info") Walk(entry.second, key, depth + 1);
+      if (done.count(base::ToLower(key)) > 0) continue;
+      if (area_keys::IsNoGoal(key)) {
+        passed_parts_.Add(key, LineOf(entry.first));
+      } else {
+        Walk(entry.second, key, depth + 1);
+      }
+    }
+  }
+
+  void AddParallel(const area_keys::ParallelLists& lists) {
+    const std::vector<double> x = NumbersOf(lists.x), y = NumbersOf(lists.y);
+    const std::vector<double> yaw =
+        lists.yaw.value ? NumbersOf(lists.yaw.value) : std::vector<double>(x.size(), 0.0);
+    const int line = LineOf(lists.x);
+    if (x.size() != y.size() || x.size() != yaw.size()) {
+      return Fail(line, fmt::format("'{}' and the lists of y and yaw beside it have {}, {} and {} "
+                                    "numbers, wanted as many in each",
+                                    lists.x_key, x.size(), y.size(), yaw.size()));
+    }
+    for (std::size_t i = 0; i < x.size(); ++i) {
+      const auto turn =
+          lists.yaw.value ? std::make_optional(lists.yaw.factor * yaw[i]) : std::nullopt;
+      Keep("", line, Pose(line, x[i], y[i], turn));
     }
   }
 
   static std::string OwnName(const YAML::Node& map, const std::string& otherwise) {
-    const YAML::Node own = Find(map, {"name", "label", "id"});
-    return own && own.IsScalar() ? own.Scalar() : otherwise;
+    const std::string own = area_keys::NameIn(map);
+    return own.empty() ? otherwise : own;
   }
 
   /// Numbers mean something else in other frames.
   void CheckFrame(const YAML::Node& map) {
-    const YAML::Node header = map["header"];
-    const YAML::Node frame = header && header.IsMap() ? header["frame_id"] : map["frame_id"];
-    if (!frame || !frame.IsScalar()) return;
+    const YAML::Node frame = area_keys::FrameIn(map);
+    if (!frame) return;
     std::string name = frame.Scalar();
     if (!name.empty() && name[0] == '/') name.erase(0, 1);
     if (name.empty() || name == "map") return;
-    if (name == "odom" || name.rfind("base_", 0) == 0) {
+    const std::string last = name.substr(name.rfind('/') + 1);  // robots put their names before it
+    if (last == "odom" || last == "odom_combined" || last.rfind("base_", 0) == 0) {
       Fail(LineOf(frame), fmt::format("frame_id is '{}', wanted map: odometry drifts and the base "
                                       "moves; give the goals in the map",
                                       name));
@@ -161,8 +203,12 @@ class AreaReader {
 
   void Add(const YAML::Node& node, const std::string& given) {
     const std::string own = node.IsMap() ? OwnName(node, given) : given;
+    Keep(own, LineOf(node), node.IsMap() ? PoseOfMap(node) : PoseOfList(node));
+  }
+
+  /// @param pose  nothing where an error says why.
+  void Keep(const std::string& own, int line, const std::optional<geometry::Pose2>& pose) {
     const std::string name = own.empty() ? fmt::format("goal{}", ++num_unnamed_) : own;
-    const int line = LineOf(node);
     if (name.find_first_of(",:()") != std::string::npos) {
       Fail(line, fmt::format("'{}' is called with one of , : ( ), which mean something else in "
                              "options; rename it",
@@ -178,8 +224,7 @@ class AreaReader {
           fmt::format("{}:{}: has more than {} goals; leave those out that are no question", path_,
                       line, kMostAreas));
     }
-    const auto pose = node.IsMap() ? PoseOfMap(node) : PoseOfList(node);
-    if (pose) areas_.push_back({name, *pose});  // else an error says why
+    if (pose) areas_.push_back({name, *pose});
   }
 
   std::optional<geometry::Pose2> PoseOfList(const YAML::Node& list) {
@@ -188,8 +233,10 @@ class AreaReader {
     if (n.size() == 2) return Pose(line, n[0], n[1], std::nullopt);
     if (n.size() == 3) return Checked(line, {n[0], n[1], n[2]});
     if (n.size() == 7) {
+      const std::optional<double> yaw = YawOf({n[3], n[4], n[5], n[6]}, false, line);
+      if (!yaw) return std::nullopt;
       NoteHeight(line, n[2]);
-      return Pose(line, n[0], n[1], YawOf(n[3], n[4], n[5], n[6]));
+      return Pose(line, n[0], n[1], yaw);
     }
     Fail(line, fmt::format("a list of {} numbers, wanted [x, y, yaw] [m, m, rad], or 7: position "
                            "and quaternion (x, y, z, w)",
@@ -197,75 +244,121 @@ class AreaReader {
     return std::nullopt;
   }
 
-  std::optional<geometry::Pose2> PoseOfMap(const YAML::Node& map) {
-    const int line = LineOf(map);
-    const YAML::Node inner = map["pose"];
-    if (inner && !map["position"] && !(map["x"] && map["y"])) {
-      if (inner.IsMap()) return PoseOfMap(inner);
-      const YAML::Node turn = map["orientation"];
-      if (!turn) return PoseOfList(inner);
-      const std::vector<double> p = NumbersOf(inner), q = NumbersOf(turn);
-      if ((p.size() == 2 || p.size() == 3) && q.size() == 4) {  // the panel writes w first
-        if (p.size() == 3) NoteHeight(line, p[2]);
-        return Pose(line, p[0], p[1], YawOf(q[1], q[2], q[3], q[0]));
-      }
-      Fail(line, "wanted pose: [x, y, z] with orientation: [w, x, y, z]");
+  /// @param is_called_so  then it may have any length, and 0 in messages that were never filled.
+  /// @return nothing where an error says why.
+  std::optional<double> YawOf(const Quaternion& q, bool is_called_so, int line) {
+    if (is_called_so && q.length() == 0.0) {
+      Note(line, kNoTurn);
+      return 0.0;
+    }
+    if (!is_called_so && std::abs(q.length() - 1.0) > kLengthSlack) {
+      Fail(line, fmt::format("({:g}, {:g}, {:g}, {:g}) is no quaternion x, y, z, w: its length is "
+                             "{:.3g}, wanted 1",
+                             q.x, q.y, q.z, q.w, q.length()));
       return std::nullopt;
     }
-    const auto position = PositionOf(map["position"] ? map["position"] : map);
-    if (!position) return std::nullopt;
-    bool is_wrong = false;
-    const auto yaw = TurnOf(map, &is_wrong);
-    if (is_wrong) return std::nullopt;
-    return Pose(line, position->x(), position->y(), yaw);
+    if (q.up() > 0.5) return q.yaw();
+    Fail(line, fmt::format("quaternion ({:g}, {:g}, {:g}, {:g}) turns the robot over; wanted its "
+                           "numbers in the order x, y, z, w",
+                           q.x, q.y, q.z, q.w));
+    return std::nullopt;
   }
 
-  std::optional<Eigen::Vector2d> PositionOf(const YAML::Node& node) {
+  std::optional<geometry::Pose2> PoseOfMap(const YAML::Node& map) {
+    const int line = LineOf(map);
+    for (const std::string& key : area_keys::UnknownIn(map)) passed_keys_.Add(key, line);
+    const YAML::Node inner = Find(map, {"pose"}), own = area_keys::PositionIn(map);
+    if (inner && !own && !area_keys::FlatPositionIn(map)[0]) {
+      if (!inner.IsMap()) return PoseOfPanel(map, inner);
+      CheckFrame(inner);
+      return PoseOfMap(inner);
+    }
+    if (own && own.IsMap()) CheckFrame(own);
+    const auto position = PositionOf(own ? own : map);
+    if (!position) return std::nullopt;
+    bool is_wrong = false;
+    auto yaw = TurnOf(map, own.IsDefined(), &is_wrong);
+    if (!yaw && !is_wrong && own && own.IsMap()) yaw = TurnOf(own, false, &is_wrong);
+    if (is_wrong) return std::nullopt;
+    if (position->size() == 3 && !IsOfQuaternion(own ? own : map)) {
+      if (!yaw && own && own.IsSequence() && !area_keys::HasHeight(map) && (*position)[2] != 0.0) {
+        Fail(line, fmt::format("its third number, {:g}, is a yaw or a height; write x, y and yaw "
+                               "[m, m, rad] by name",
+                               (*position)[2]));
+        return std::nullopt;
+      }
+      NoteHeight(LineOf(own ? own : map), (*position)[2]);
+    }
+    return Pose(line, (*position)[0], (*position)[1], yaw);
+  }
+
+  /// {pose: [x, y, z], orientation: [w, x, y, z]} of Nav2's panel, or a list alone.
+  std::optional<geometry::Pose2> PoseOfPanel(const YAML::Node& map, const YAML::Node& list) {
+    const int line = LineOf(map);
+    const YAML::Node turn = Find(map, {"orientation"});
+    if (!turn) return PoseOfList(list);
+    const std::vector<double> p = NumbersOf(list), q = NumbersOf(turn);
+    if ((p.size() == 2 || p.size() == 3) && q.size() == 4) {  // the panel writes w first
+      if (p.size() == 3) NoteHeight(line, p[2]);
+      const std::optional<double> yaw = YawOf({q[1], q[2], q[3], q[0]}, true, line);
+      return yaw ? Pose(line, p[0], p[1], yaw) : std::nullopt;
+    }
+    Fail(line, "wanted pose: [x, y, z] with orientation: [w, x, y, z]");
+    return std::nullopt;
+  }
+
+  /// Two numbers, or three.
+  std::optional<std::vector<double>> PositionOf(const YAML::Node& node) {
     std::vector<double> p;
     if (node.IsSequence()) {
       p = NumbersOf(node);
-    } else if (node.IsMap() && node["x"] && node["y"]) {
+    } else if (node.IsMap()) {
       YAML::Node list(YAML::NodeType::Sequence);
-      for (const char* key : {"x", "y", "z"}) {
-        if (node[key]) list.push_back(node[key]);
+      for (const YAML::Node& number : area_keys::FlatPositionIn(node)) {
+        if (number) list.push_back(number);
       }
       p = NumbersOf(list);
     }
-    if (p.size() != 2 && p.size() != 3) {
-      Fail(LineOf(node), "has no position in numbers, wanted x and y [m]");
-      return std::nullopt;
-    }
-    if (p.size() == 3) NoteHeight(LineOf(node), p[2]);
-    return Eigen::Vector2d(p[0], p[1]);
+    if (p.size() == 2 || p.size() == 3) return p;
+    Fail(LineOf(node), "has no position in numbers, wanted x and y [m]");
+    return std::nullopt;
+  }
+
+  /// Whether z and w beside x and y are of a turn about z: w is of nothing else.
+  static bool IsOfQuaternion(const YAML::Node& map) {
+    return map.IsMap() && Find(map, {"w"}) && Find(map, {"x"});
   }
 
   /// @param[out] is_wrong  there is one, and it cannot be read; an error says so.
-  std::optional<double> TurnOf(const YAML::Node& map, bool* is_wrong) {
-    const YAML::Node own = Find(map, {"orientation", "rotation", "quaternion"});
-    const YAML::Node turn = own ? own : map;
+  std::optional<double> TurnOf(const YAML::Node& map, bool has_position, bool* is_wrong) {
+    if (const YAML::Node own = area_keys::OrientationIn(map)) return OrientationOf(own, is_wrong);
+    if (const area_keys::Angle angle = area_keys::AngleIn(map); angle.value)
+      return Read(angle.value, angle.factor, is_wrong);
+    const auto beside = area_keys::FlatQuaternionIn(map);
+    if (beside[3]) return QuaternionOf(beside, true, is_wrong);
+    const YAML::Node none(YAML::NodeType::Undefined);
+    if (!has_position && IsOfQuaternion(map))
+      return QuaternionOf({none, none, Find(map, {"z"}), Find(map, {"w"})}, false, is_wrong);
+    return std::nullopt;
+  }
+
+  std::optional<double> OrientationOf(const YAML::Node& turn, bool* is_wrong) {
+    if (turn.IsScalar()) return Read(turn, 1.0, is_wrong);
     if (turn.IsSequence()) {
       const std::vector<double> q = NumbersOf(turn);
-      if (q.size() == 4) return YawOf(q[0], q[1], q[2], q[3]);
       if (q.size() == 3) return q[2];  // roll, pitch, yaw
       if (q.size() == 1) return q[0];
+      if (q.size() == 4) {
+        const auto yaw = YawOf({q[0], q[1], q[2], q[3]}, true, LineOf(turn));
+        *is_wrong |= !yaw;
+        return yaw;
+      }
     } else if (turn.IsMap()) {
-      const auto number = [&](const char* key) {
-        double value = 0.0;
-        if (turn[key]) *is_wrong |= !YAML::convert<double>::decode(turn[key], value);
-        return value;
-      };
-      for (const char* key : {"yaw", "theta", "th", "heading", "angle"}) {
-        if (turn[key]) return Read(turn[key], 1.0, is_wrong);
-      }
-      for (const char* key : {"yaw_deg", "theta_deg", "degrees"}) {
-        if (turn[key]) return Read(turn[key], M_PI / 180.0, is_wrong);
-      }
-      if (!turn["w"]) return std::nullopt;
-      // Beside the position only z and w of the quaternion could stand, and z is its height.
-      const auto yaw = YawOf(number("x"), number("y"), number("z"), number("w"));
-      if (own && !*is_wrong) return yaw;
-    } else {
-      return Read(turn, 1.0, is_wrong);
+      if (const area_keys::Angle angle = area_keys::AngleIn(turn); angle.value)
+        return Read(angle.value, angle.factor, is_wrong);
+      const std::array<YAML::Node, 4> xyzw{Find(turn, {"x", "qx"}), Find(turn, {"y", "qy"}),
+                                           Find(turn, {"z", "qz"}), Find(turn, {"w", "qw"})};
+      if (xyzw[2] || xyzw[3]) return QuaternionOf(xyzw, true, is_wrong);
     }
     *is_wrong = true;
     Fail(LineOf(turn),
@@ -273,12 +366,30 @@ class AreaReader {
     return std::nullopt;
   }
 
+  /// What is not there is 0.
+  std::optional<double> QuaternionOf(const std::array<YAML::Node, 4>& xyzw, bool is_called_so,
+                                     bool* is_wrong) {
+    std::array<double, 4> q{};
+    int line = 0;
+    for (int i = 0; i < 4; ++i) {
+      if (!xyzw[i]) continue;
+      line = LineOf(xyzw[i]);
+      const auto number = Read(xyzw[i], 1.0, is_wrong);
+      if (!number) return std::nullopt;
+      q[i] = *number;
+    }
+    const std::optional<double> yaw = YawOf({q[0], q[1], q[2], q[3]}, is_called_so, line);
+    *is_wrong |= !yaw;
+    return yaw;
+  }
+
   std::optional<double> Read(const YAML::Node& node, double factor, bool* is_wrong) {
     double value = 0.0;
     if (node.IsScalar() && YAML::convert<double>::decode(node, value) && std::isfinite(value))
       return factor * value;
     *is_wrong = true;
-    Fail(LineOf(node), "has no yaw in numbers, wanted radians");
+    Fail(LineOf(node),
+         "has no orientation in numbers, wanted a yaw [rad], or x, y, z, w of a quaternion");
     return std::nullopt;
   }
 
@@ -288,7 +399,7 @@ class AreaReader {
   }
 
   std::optional<geometry::Pose2> Pose(int line, double x, double y, std::optional<double> yaw) {
-    if (!yaw) Note(line, "goals without an orientation have a yaw of 0");
+    if (!yaw) Note(line, kNoTurn);
     return Checked(line, {x, y, yaw.value_or(0.0)});
   }
 
@@ -306,6 +417,7 @@ class AreaReader {
   std::vector<NamedArea> areas_;
   std::vector<std::string> errors_;
   std::map<std::string, Places> noted_;
+  Passed passed_keys_, passed_parts_;
   std::map<std::string, int> lines_;  // of names, in lower case
   int num_nodes_{0}, num_unnamed_{0};
 };

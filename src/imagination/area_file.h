@@ -10,15 +10,20 @@ namespace hires::imagination {
 /// Reads places to stand at out of a YAML file of goals or waypoints as navigation tools have them,
 /// in lists or by name, under whatever keys:
 /// - [x, y], [x, y, yaw] or [x, y, z, qx, qy, qz, qw];
-/// - {x, y} with yaw, theta, th, heading or angle [rad], or with yaw_deg [degrees];
+/// - {x, y} (or px, position_x, ...) with yaw, theta, th, heading or angle [rad], with yaw_deg
+///   [degrees], or with a quaternion: qz and qw, or z and w of length 1;
 /// - {position, orientation} of geometry_msgs, in maps or lists (x, y, z, w), with a header or
 ///   without, below pose, target_pose and the like; several documents as `rostopic echo` prints
-///   them;
+///   them; `location`, `coords`, `pos` and the like beside a name, a yaw or an orientation;
+/// - lists side by side: goals_x, goals_y, goals_yaw;
 /// - {pose: [x, y, z], orientation: [w, x, y, z]}, as the panel of Nav2 for RViz saves them.
-/// Names are those of the keys, or of `name`, `id` or `label` beside a pose; others are called
-/// goal1, goal2, ... by their number in the file. What is assumed (no yaw: 0) or left out (heights)
-/// is logged once for each kind, with the first place.
-/// @throws base::ConfigError with all that is wrong, each with its line.
+/// Case is ignored in keys. Names are those of the keys, or of `name`, `id`, `label`, `room` and
+/// the like beside a pose; others are called goal1, goal2, ... by their number in the file. What is
+/// assumed (no yaw: 0), left out (heights) or passed over (keys that say nothing of a goal, or hold
+/// none by their names: tolerances, colors, sizes) is logged once for each kind, with the first
+/// place.
+/// @throws base::ConfigError with all that is wrong, each with its line: also frames that drift or
+/// move (odom, base_link, with or without a robot's name before), and quaternions that are none.
 std::vector<NamedArea> ReadAreaFile(const std::string& path);
 
 /// @throws base::ConfigError: too far away, or called as another area of the world.

@@ -149,6 +149,144 @@ TEST_F(AreaFileTest, EveryFormSaysTheSamePlaces) {
   }
 }
 
+/// A goal written in many ways.
+std::vector<std::string> WaysToWrite(const std::string& name, const geometry::Pose2& X) {
+  const auto n = [](double value) { return fmt::format("{}", value); };
+  const double z = std::sin(X.yaw / 2), w = std::cos(X.yaw / 2);
+  const std::string list = fmt::format("[{}, {}]", n(X.x), n(X.y));
+  const std::string xy = fmt::format("x: {}, y: {}", n(X.x), n(X.y));
+  const std::string zw = fmt::format("{{z: {}, w: {}}}", n(z), n(w));
+  const std::string four = fmt::format("[0, 0, {}, {}]", n(z), n(w));
+  const std::string yaw = "yaw: " + n(X.yaw);
+  std::vector<std::string> ways;
+  for (const char* key : {"position", "location", "coords", "coordinates", "pos", "point",
+                          "translation", "Location", "xy"}) {
+    for (const std::string& where :
+         {list, "{" + xy + "}", "{X: " + n(X.x) + ", Y: " + n(X.y) + "}"}) {
+      for (const std::string& turn :
+           {yaw, "orientation: " + zw, "rotation: " + four, "Yaw: " + n(X.yaw),
+            "heading_deg: " + n(X.yaw * 180.0 / M_PI)}) {
+        ways.push_back(fmt::format("- {{name: {}, {}: {}, {}}}\n", name, key, where, turn));
+        ways.push_back(fmt::format("{}: {{{}: {}, {}}}\n", name, key, where, turn));
+      }
+    }
+    ways.push_back(fmt::format("- {{room: {}, {}: {{{}, {}}}}}\n", name, key, xy, yaw));
+  }
+  for (const char* flat :
+       {"x: {0}, y: {1}, qz: {2}, qw: {3}", "X: {0}, Y: {1}, qx: 0, qy: 0, qz: {2}, qw: {3}",
+        "x: {0}, y: {1}, z: {2}, w: {3}", "px: {0}, py: {1}, oz: {2}, ow: {3}",
+        "position_x: {0}, position_y: {1}, orientation_z: {2}, orientation_w: {3}",
+        "pos_x: {0}, pos_y: {1}, yaw: {4}"}) {
+    ways.push_back(fmt::format("{}: {{", name) +
+                   fmt::format(fmt::runtime(flat), X.x, X.y, z, w, X.yaw) + "}\n");
+  }
+  return ways;
+}
+
+TEST_F(AreaFileTest, OneGoalIsOneWhateverItsKeysAreCalled) {
+  for (int seed = 0; seed < Rounds(5); ++seed) {
+    base::Rng rng = base::Rng(11).Fork(seed);
+    const geometry::Pose2 X{rng.Uniform(-50, 50), rng.Uniform(-50, 50), rng.Uniform(-3.1, 3.1)};
+    for (const std::string& yaml : WaysToWrite("dock", X)) {
+      const LogCatcher log(base::LogLevel::kWarn);
+      const auto areas = Read(yaml);
+      ASSERT_EQ(areas.size(), 1u) << yaml;
+      ExpectArea(areas[0], "dock", X.x, X.y, X.yaw);
+      EXPECT_THAT(log.lines, IsEmpty()) << yaml;
+    }
+  }
+}
+
+TEST_F(AreaFileTest, FramesThatDriftOrMoveAreRefusedAtEveryDepth) {
+  for (const char* frame : {"odom", "/odom", "tb3_0/odom", "/a/b/odom_combined", "odom_combined",
+                            "base_link", "r1/base_footprint"}) {
+    const std::string id = fmt::format("frame_id: {}", frame);
+    const std::string pose = "pose: {position: {x: 1, y: 2}, orientation: {w: 1}}";
+    for (const std::string& yaml :
+         {"- {name: a, pose: {header: {" + id + "}, " + pose + "}}\n",
+          "- {name: a, header: {" + id + "}, " + pose + "}\n",
+          "- {name: a, target_pose: {header: {" + id + "}, " + pose + "}}\n",
+          "a: {pose: {x: 1, y: 2, yaw: 0, " + id + "}}\n", id + "\na: [1, 2, 0]\n",
+          "- {name: a, yaw: 0, location: {x: 1, y: 2, " + id + "}}\n",
+          "p: {" + id + ", a: [1, 2, 0]}\n"}) {
+      EXPECT_THAT(ErrorOf(yaml), AllOf(HasSubstr("wanted map"), HasSubstr("goals.yaml:1:")))
+          << yaml;
+    }
+  }
+  EXPECT_EQ(Read("a: {pose: {x: 1, y: 2, yaw: 0, frame_id: /map}}\n").size(), 1u);
+}
+
+TEST_F(AreaFileTest, WhatIsPlainlyNoGoalIsPassedOverAndNamedOnce) {
+  const LogCatcher log(base::LogLevel::kWarn);
+  const auto areas = Read(
+      "marker: {color: [1, 0, 0, 1], scale: {x: 0.2, y: 0.2, z: 0.2}}\n"
+      "xy_tolerance: [0.25, 0.25]\nspeed_limits: [0.2, 0.5]\nsize: [1, 2, 3]\nsize_xy: [1, 2]\n"
+      "zone: {polygon: [[0, 0], [1, 0], [1, 1]]}\n"
+      "goals: {kitchen: [1, 0.5, 1.57], speed_bump: [1, 2, 0]}\n");
+  ASSERT_EQ(areas.size(), 2u);
+  ExpectArea(areas[0], "kitchen", 1, 0.5, 1.57);
+  ExpectArea(areas[1], "speed_bump", 1, 2, 0);
+  EXPECT_THAT(
+      log.lines,
+      ElementsAre(AllOf(HasSubstr("goals.yaml:1: passes over 'color', 'scale', 'xy_tolerance', "
+                                  "'speed_limits', 'size', 'size_xy', 'polygon'"),
+                        HasSubstr("no goals"))));
+}
+
+TEST_F(AreaFileTest, KeysOfAGoalThatSayNothingAreNamed) {
+  const LogCatcher log(base::LogLevel::kWarn);
+  ExpectArea(
+      Read("- {name: a, x: 1, y: 2, direction: 90, type: dock}\n- {x: 1, y: 3, yaw: 1, turn: 3}\n")
+          [0],
+      "a", 1, 2, 0);
+  EXPECT_THAT(log.lines,
+              ElementsAre(HasSubstr("have a yaw of 0"),
+                          AllOf(HasSubstr("goals.yaml:1: passes over 'direction', 'turn'"),
+                                HasSubstr("yaw [rad]"))));
+}
+
+TEST_F(AreaFileTest, ListsSideBySideAreGoals) {
+  for (int seed = 0; seed < Rounds(20); ++seed) {
+    base::Rng rng = base::Rng(5).Fork(seed);
+    std::vector<std::string> x, y, yaw;
+    std::vector<geometry::Pose2> poses;
+    for (int i = 1 + rng.Index(5); i > 0; --i) {
+      poses.push_back({rng.Uniform(-9, 9), rng.Uniform(-9, 9), rng.Uniform(-3, 3)});
+      x.push_back(fmt::format("{}", poses.back().x));
+      y.push_back(fmt::format("{}", poses.back().y));
+      yaw.push_back(fmt::format("{}", poses.back().yaw));
+    }
+    for (const std::string stem : {"", "goals_", "Patrol_"}) {
+      for (const char* turn : {"yaw", "theta"}) {
+        const auto areas =
+            Read(fmt::format("patrol:\n  {0}x: [{1}]\n  {0}y: [{2}]\n  {0}{3}: [{4}]\n", stem,
+                             fmt::join(x, ", "), fmt::join(y, ", "), turn, fmt::join(yaw, ", ")));
+        ASSERT_EQ(areas.size(), poses.size());
+        for (std::size_t i = 0; i < poses.size(); ++i) {
+          ExpectArea(areas[i], fmt::format("goal{}", i + 1), poses[i].x, poses[i].y, poses[i].yaw);
+        }
+      }
+    }
+  }
+  EXPECT_EQ(Read("goals_x: [1, 2]\ngoals_y: [3, 4]\n").size(), 2u);
+  EXPECT_THAT(ErrorOf("goals_x: [1, 2]\ngoals_y: [3, 4, 5]\n"),
+              AllOf(HasSubstr("goals.yaml:1: 'goals_x'"), HasSubstr("2, 3 and 2 numbers")));
+}
+
+TEST_F(AreaFileTest, WhatIsNoTurnOnTheFloorIsRefused) {
+  for (const char* yaml : {"a: [1.0, 0.5, 0.0, 2.0, -0.5, 1.57, 0.0]\n",
+                           "a: [1, 2, 0, 0, 0, 0, 0]\n", "a: {x: 1, y: 2, z: 0.1, w: 0.7}\n"}) {
+    EXPECT_THAT(ErrorOf(yaml), AllOf(HasSubstr("goals.yaml:1:"), HasSubstr("no quaternion")))
+        << yaml;
+  }
+  for (const char* yaml : {"a: {position: [1, 2], orientation: [0.7071, 0, 0, 0.7071]}\n",
+                           "a: [1, 2, 0, 1, 0, 0, 0]\n"}) {
+    EXPECT_THAT(ErrorOf(yaml), HasSubstr("turns the robot over")) << yaml;
+  }
+  EXPECT_THAT(ErrorOf("- {name: a, coords: [1, 2, 1.5]}\n"), HasSubstr("a yaw or a height"));
+  EXPECT_THAT(ErrorOf("a: {x: 1, y: 2, yaw: 90deg}\n"), HasSubstr("wanted a yaw [rad]"));
+}
+
 TEST_F(AreaFileTest, BombsAreRefusedAndBounded) {
   std::string deep = "a: ";
   for (int i = 0; i < 100; ++i) deep += "{b: ";
