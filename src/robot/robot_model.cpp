@@ -13,6 +13,7 @@
 #include "hires/base/text.h"
 #include "robot/model_hash.h"
 #include "robot/quiet_urdf_parser.h"
+#include "robot/urdf/base_root.h"
 #include "robot/urdf/clean_urdf.h"
 #include "robot/urdf/read_urdf.h"
 #include "robot/urdf/urdf_file.h"
@@ -186,6 +187,7 @@ UrdfReading ReadUrdf(const std::string& raw_xml, const std::string& where) {
   UrdfReading reading = ConvertUrdf(*ParseUrdfQuietly(clean.xml, where, &problems), outline,
                                     clean.shape_lines, where, &problems);
   problems.ThrowIfAny();
+  reading.base_note = RootAtBase(&reading.model);
   reading.model.hash = HashOf(reading.model);
   return reading;
 }

@@ -372,6 +372,10 @@ void SayAssumed(const Robot& robot) {
     base::Log(base::LogLevel::kInfo, fmt::format("robot={} assumed {}", robot.model.name, text));
 }
 
+void SayBase(const std::string& note, Robot* robot) {
+  if (!note.empty()) robot->assumed.insert(robot->assumed.begin(), note);
+}
+
 /// What the file leaves out is taken from the model, as for a bare URDF.
 void FillFromModel(ParamReader in, Robot* robot) {
   RobotProfile& profile = robot->profile;
@@ -507,6 +511,7 @@ Robot LoadRobot(const std::string& profile_path) {
   if (robot.profile.footprint.empty()) SetFootprint(reading.doubts, &robot);
   SayDoubts(reading.doubts, urdf.path, robot);
   robot.assumed = AssumptionsOf(robot, IsGivenIn(in), xml);
+  if (!in.Has("base_link")) SayBase(reading.base_note, &robot);
   SayAssumed(robot);
   robot.profile.hash = HashOf(robot.profile);
   return robot;
@@ -529,6 +534,7 @@ Robot LoadRobotFromUrdf(const std::string& urdf_path) {
   SayDoubts(reading.doubts, file.path, robot);
   robot.assumed = AssumptionsOf(
       robot, [](const std::string& /*key*/) { return false; }, xml);
+  SayBase(reading.base_note, &robot);
   SayAssumed(robot);
   profile.hash = HashOf(profile);
   return robot;

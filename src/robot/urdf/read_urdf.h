@@ -12,6 +12,8 @@ struct UrdfReading {
   RobotModel model;
   /// Meshes that are hardly in metres, a sentence each with file, size and remedy.
   std::vector<std::string> doubts;
+  /// What is to be known of the base, where it is not the root of the file; see RootAtBase.
+  std::string base_note{};
 };
 
 /// As ParseRobotModel, with what it would log of units.
