@@ -1,6 +1,8 @@
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 
+#include <cmath>
+
 #include "hires/base/rng.h"
 #include "hires/base/text.h"
 #include "hires/robot/load_robot.h"
@@ -13,6 +15,7 @@ namespace {
 using hires::test_support::Rounds;
 using hires::test_support::TemporaryFolder;
 using ::testing::Contains;
+using ::testing::ContainsRegex;
 using ::testing::Each;
 using ::testing::HasSubstr;
 using ::testing::Not;
@@ -95,6 +98,26 @@ TEST(WriteProfileTest, WhatIsNoLongerACommentIsNoLongerAssumed) {
   EXPECT_EQ(robot.hash(), LoadRobotFromUrdf(kRoot + "/urdf/cart.urdf").hash()) << checked;
   EXPECT_THAT(robot.assumed, Not(Contains(HasSubstr("motion_sets"))));
   EXPECT_THAT(robot.assumed, Not(Contains(HasSubstr("base_controller"))));
+}
+
+TEST(WriteProfileTest, LengthsAreRoundedToATenthOfAMillimetre) {
+  base::Rng rng(6);
+  const TemporaryFolder folder;
+  for (int round = 0; round < Rounds(30); ++round) {
+    const double yaw = 0.25 * M_PI * rng.Index(8), x = rng.Uniform(-1.0, 1.0);
+    const std::string urdf = folder.Write(
+        "r.urdf",
+        fmt::format("<robot name='r'><link name='b'><collision><origin xyz='0 0 0.2' rpy='0 0 "
+                    "{0}'/><geometry><box size='0.6 0.4 0.2'/></geometry></collision></link><joint "
+                    "name='j' type='fixed'><origin xyz='{1} 0 0.5' rpy='0 0 {0}'/><parent "
+                    "link='b'/><child link='tray'/></joint><link name='tray'><collision><origin "
+                    "xyz='0.1 0 0' rpy='0 0 {0}'/><geometry><box size='0.3 0.3 0.02'/></geometry>"
+                    "</collision></link></robot>",
+                    yaw, x));
+    const std::string text = WriteProfile(urdf, folder.path().string());
+    for (const char* none : {"-0,", "-0]", "-0}"}) EXPECT_THAT(text, Not(HasSubstr(none)));
+    EXPECT_THAT(text, Not(ContainsRegex("[0-9]e-[0-9]")));
+  }
 }
 
 }  // namespace

@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 
 #include "hires/base/text.h"
@@ -22,6 +23,11 @@ std::string InQuotes(const std::string& text) {
     quoted += letter;
   }
   return quoted + '"';
+}
+
+/// To 0.1 mm, below which lengths in comments say nothing.
+double Rounded(double length) {
+  return std::round(length * 1e4) / 1e4 + 0.0;  // no -0
 }
 
 /// Lines of YAML, each with what it means behind it.
@@ -54,7 +60,7 @@ std::string RootOf(const Robot& robot) {
 std::string FootprintComment(const geometry::Polygon& footprint) {
   std::vector<std::string> corners;
   for (const Eigen::Vector2d& p : footprint)
-    corners.push_back(fmt::format("{{x: {:.4g}, y: {:.4g}}}", p.x(), p.y()));
+    corners.push_back(fmt::format("{{x: {:.4g}, y: {:.4g}}}", Rounded(p.x()), Rounded(p.y())));
   return fmt::format(
       "[m] empty: the outline from above of all shapes up to 2 m over the floor, which is [{}]",
       base::Join(corners, ", "));
@@ -78,8 +84,8 @@ void AddTray(const RobotProfile& profile, LineWriter* out) {
           : "link that carries loose objects, by its name");
   if (profile.tray_link.empty()) return;
   const Eigen::Vector3d& p = profile.X_TO.translation;
-  out->Add(fmt::format("# object_on_tray: {{xyz: [{:.4g}, {:.4g}, {:.4g}], rpy: [0, 0, 0]}}", p.x(),
-                       p.y(), p.z()),
+  out->Add(fmt::format("# object_on_tray: {{xyz: [{:.4g}, {:.4g}, {:.4g}], rpy: [0, 0, 0]}}",
+                       Rounded(p.x()), Rounded(p.y()), Rounded(p.z())),
            "where things stand, in that link's frame; left out: the middle of its top, or of the "
            "largest part of it that is free, which is this");
 }
@@ -147,9 +153,9 @@ std::string WriteProfile(const std::string& path, const std::string& folder) {
   out.Add("urdf: " + InQuotes(TextOf(file)), "as seen from the folder of this file");
   out.Add("base_link: " + InQuotes(RootOf(robot)),
           robot.base_height > 0.0
-              ? fmt::format("the root; it is {:.3f} m over the floor, as its shapes reach so deep",
+              ? fmt::format("the base; it is {:.3f} m over the floor, as its shapes reach so deep",
                             robot.base_height)
-              : "the root, which is taken to lie on the floor");
+              : "the base, which is taken to lie on the floor");
   AddTray(profile, &out);
   AddLaser(robot, xml, &out);
   out.AddAssumed("footprint: []", FootprintComment(profile.footprint));

@@ -121,7 +121,8 @@ std::string Expanded(const UrdfFile& file) {
   if (program.empty()) {
     throw base::ConfigError(fmt::format(
         "{}: is a xacro file, and there is no program xacro on PATH that would expand it; install "
-        "it (it comes with ROS), or make a URDF of it where it is, and give that: {}",
+        "ROS's own package xacro (Debian's packages of ROS have none), or make a URDF of it where "
+        "xacro is, and give that: {}",
         file.path, CommandFor(file)));
   }
   // What begins with a dash would be an option.

@@ -181,7 +181,7 @@ int ExitCodeFor(loop::AchieveOutcome outcome) {
 void AddFiles(CLI::App* verb, CLI::Option* local, loop::LoopFiles* files) {
   const std::tuple<const char*, std::string*, const char*> options[] = {
       {"--world", &files->world, "with --local: SDF file instead of the configuration's"},
-      {"--robot", &files->robot, "with --local: profile or URDF, likewise"},
+      {"--robot", &files->robot, "with --local: profile, URDF or xacro file, likewise"},
       {"--objects", &files->objects, "with --local: catalogue of objects, likewise"},
       {"--operators", &files->operators,
        "with --local: YAML beside the domain, likewise; default: that of its name"}};

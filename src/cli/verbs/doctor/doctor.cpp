@@ -142,7 +142,7 @@ void AddDoctorVerb(CLI::App* app, DoctorOptions* o) {
           ->add_option(
               "--robot", o->files.robot,
               "look at the robot of ROS_MASTER_URI instead; with --world or --map: profile "
-              "(.yaml) or URDF")
+              "(.yaml), URDF or xacro file")
           ->expected(0, 1);
   o->verb->add_option(
       "--world", o->files.world,

@@ -63,7 +63,7 @@ void AddOptions(CLI::App* app, ImagineOptions* o) {
   app->add_option("--map", o->map, "a map_server map (its YAML) whose walls are the world")
       ->excludes(world);
   AddAreaOption(app, &o->areas);
-  app->add_option("--robot", o->robot, "another robot: profile (.yaml) or URDF (.urdf)");
+  app->add_option("--robot", o->robot, "another robot: profile (.yaml), URDF or xacro file");
   app->add_option("--objects", o->objects, "another catalogue of objects (YAML)");
   app->add_option("--scene", o->scene, "another scene file instead of config/scene.yaml");
   app->add_option("--config", o->config, "another file instead of config/imagination_client.yaml");

@@ -57,7 +57,7 @@ void AddLimitsVerb(CLI::App* app, LimitsOptions* options) {
   verb->add_option("--object", options->object,
                    "on the tray: of the catalogue, or a file (.sdf, .urdf, .yaml)")
       ->required();
-  verb->add_option("--robot", options->robot, "another robot: profile (.yaml) or URDF (.urdf)");
+  verb->add_option("--robot", options->robot, "another robot: profile (.yaml), URDF or xacro file");
   verb->add_option("--max-fall", options->max_fall,
                    "share of drives that may lose the object; default: 0.01")
       ->check(NumberBetween(0.001, 0.5));

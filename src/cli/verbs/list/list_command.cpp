@@ -372,8 +372,9 @@ void AddListVerb(CLI::App* app, bool with_tasks, ListOptions* o) {
   verb->add_option("--map", o->map, "a map_server map (its YAML) instead of a world: its extent")
       ->excludes(world);
   AddAreaOption(verb, &o->areas);
-  verb->add_option("--robot", o->robot,
-                   "another robot, profile (.yaml) or URDF: its tray, motion sets and postures");
+  verb->add_option(
+      "--robot", o->robot,
+      "another robot, profile (.yaml), URDF or xacro file: its tray, motion sets and postures");
   verb->add_option("--objects", o->objects, "another catalogue of objects (YAML)");
   verb->add_option("--scene", o->scene, "another scene file instead of config/scene.yaml");
   verb->add_option("--uncertainty", o->uncertainty, "a file that lies over the scene's, or none");

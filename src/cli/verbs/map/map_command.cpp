@@ -232,7 +232,7 @@ void AddDrivenOptions(CLI::App* verb, MapOptions* o) {
   verb->get_option("--map")->excludes(verb->get_option("--world"));
   AddAreaOption(verb, &o->areas);
   verb->get_option("--area")->needs(drive);
-  add("--robot", &o->robot, "with --drive: another robot, profile (.yaml) or URDF (.urdf)");
+  add("--robot", &o->robot, "with --drive: another robot, profile (.yaml), URDF or xacro file");
   add("--scene", &o->scene, "with --drive: another scene file instead of config/scene.yaml");
   add("--motion-set", &o->motion_set, "with --drive: of the robot's profile; default: fast");
   add("--log", &o->log_output, "with --drive: write what was recorded as a CARMEN log");
