@@ -8,6 +8,8 @@
 namespace hires::localisation {
 namespace {
 
+constexpr double kLastDigit = 0.01;                     // [m] of ranges in most files
+constexpr double kFloatRounding = 1e-6;                 // of a float
 constexpr double kOneTurn = 2.0 * geometry::kPi + 0.1;  // [rad] the last beam may be the first
 
 ScanOutcome CheckAngles(const robot::ScanReading& scan) {
@@ -19,10 +21,14 @@ ScanOutcome CheckAngles(const robot::ScanReading& scan) {
 }
 
 bool IsMeasured(double range, double shortest, double longest) {
-  return range > 0.0 && range >= shortest && range < longest;
+  return range > 0.0 && range >= shortest && !HasMetNothing(range, longest);
 }
 
 }  // namespace
+
+bool HasMetNothing(double range, double range_max) {
+  return range_max > 0.0 && range >= (1.0 - kFloatRounding) * range_max - kLastDigit;
+}
 
 ScanOutcome Examine(const robot::ScanReading& scan, double shortest, double longest) {
   const ScanOutcome angles = CheckAngles(scan);
@@ -30,7 +36,7 @@ ScanOutcome Examine(const robot::ScanReading& scan, double shortest, double long
   bool is_any_far = false;
   for (const double range : scan.ranges) {
     if (IsMeasured(range, shortest, longest)) return ScanOutcome::kUpdated;
-    is_any_far = is_any_far || range >= longest;
+    is_any_far = is_any_far || HasMetNothing(range, longest);
   }
   return is_any_far ? ScanOutcome::kNothingMet : ScanOutcome::kNothingMeasured;
 }

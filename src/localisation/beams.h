@@ -21,6 +21,11 @@ struct Beams {
   std::size_t size() const { return x.size(); }
 };
 
+/// Whether a range [m] is what a laser of that `range_max` [m] says where nothing was met: as long,
+/// or up to a centimetre shorter, as files round both to their digits, and ranges to `float`, which
+/// makes 5.5999999 of 5.6. A `range_max` of 0 or less says nothing.
+bool HasMetNothing(double range, double range_max);
+
 /// Beams that measured something, evenly spread over all that did.
 /// @return kUpdated, or why there are none.
 ScanOutcome SelectBeams(const robot::ScanReading& scan, const geometry::Pose2& X_BL,

@@ -3,6 +3,8 @@
 #include <Eigen/Eigenvalues>
 #include <cmath>
 
+#include "localisation/beams.h"
+
 namespace hires::mapping {
 namespace {
 
@@ -55,7 +57,7 @@ std::vector<Eigen::Vector2d> PointsAround(const SurfacePoints& points,
 
 bool HasMet(const robot::ScanReading& scan, std::size_t beam, double max_range) {
   const double range = scan.ranges[beam];
-  const bool is_near = range <= max_range && (scan.range_max <= 0.0 || range < scan.range_max);
+  const bool is_near = range <= max_range && !localisation::HasMetNothing(range, scan.range_max);
   return range >= scan.range_min && range > 0.0 && is_near;
 }
 

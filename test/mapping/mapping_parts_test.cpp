@@ -54,6 +54,17 @@ TEST(ScanPointsTest, WhatIsNoMeasurementIsNoPoint) {
   EXPECT_FALSE(points[0].has_normal());
 }
 
+/// A range of a file, in `float`, is seldom the number that its `range_max` is in `double`.
+TEST(ScanPointsTest, WhatIsAsLongAsTheLaserSeesIsNoPoint) {
+  for (const double range_max : {4.095, 5.6, 8.183, 8.19, 8.191, 16.38, 18.3, 29.9}) {
+    for (const double off : {-0.01, -0.001, 0.0, 0.001, 0.01}) {
+      auto scan = ScanOf({2.0F, static_cast<float>(range_max + off), 2.5F}, 0.0, 0.1);
+      scan.reading.range_max = range_max;
+      EXPECT_EQ(PointsOf(scan, 30.0).size(), 2u) << range_max << " " << off;
+    }
+  }
+}
+
 TEST(ScanMatcherTest, PoseIsFoundAgainFromBesideIt) {
   const SurfacePoints seen = PointsOf(CornerScan(), 30.0);
   const SurfaceMap map(std::vector<PlacedPoints>{{&seen, {}}});
