@@ -17,6 +17,7 @@
 #include "hires/base/short_text.h"
 #include "hires/base/text.h"
 #include "hires/geometry/angles.h"
+#include "localisation/laser_maximum.h"
 #include "localisation/log_repair.h"
 
 namespace hires::localisation {
@@ -384,6 +385,8 @@ void CarmenReader::Finish() {
   std::stable_sort(log_.scans.begin(), log_.scans.end(), earlier);
   if (is_corrected_) MountCorrectedLaser();
   if (log_.odometry.empty()) TakeOdometryOfScans();
+  const std::string maximum = TakeLaserMaximum(&log_);
+  if (!maximum.empty()) Warn(maximum);
   SayWhatWasPassedOver();
 }
 

@@ -29,7 +29,9 @@ namespace hires::localisation {
 /// points to -90 degrees, and the others follow in whole shares of the half circle; where n is
 /// even, the last beam, at +90 degrees, is missing: 1 degree for n = 180 and 181, 0.5 for 360 and
 /// 361. GMapping takes the same steps but sets the middle one of n = 180 straight ahead.
-/// Its `range_max` is PARAM robot_front_laser_max, else 80 m, as CARMEN assumes.
+/// Its `range_max` is PARAM robot_front_laser_max, else 80 m, as CARMEN assumes. Where the largest
+/// range of a log stands in it again and again, as what the laser says where it meets nothing, that
+/// is the `range_max` of its scans of either kind, with a warning.
 ///
 /// Where the laser sits on the robot follows from the two poses of its line. If that changes
 /// between lines, a mapper has corrected the log: then PARAM robot_frontlaser_offset says it (0
