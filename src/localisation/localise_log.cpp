@@ -3,11 +3,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 #include <vector>
 
 #include "hires/base/progress.h"
 #include "hires/base/text.h"
+#include "hires/geometry/angles.h"
 
 namespace hires::localisation {
 namespace {
@@ -17,9 +19,13 @@ using geometry::Pose2;
 constexpr double kNear = 0.5;       // [s]
 constexpr double kRelocated = 1.0;  // [m]
 constexpr int kOftenElsewhere = 5;
-constexpr double kMostElsewhere = 0.05;  // of the poses
-constexpr double kFewPoses = 0.5;        // of the scans
-constexpr double kFewExplained = 0.65;   // of the beams
+constexpr double kMostElsewhere = 0.05;                                       // of the poses
+constexpr double kFewPoses = 0.5;                                             // of the scans
+constexpr double kFewExplained = 0.65;                                        // of the beams
+constexpr double kFewKnown = 0.8;                                             // of the way
+constexpr double kAgreeing = 1.0, kAgreeingOfWay = 0.1, kMostAgreeing = 2.0;  // [m]
+constexpr double kAgreeingTurn = 0.5;                                         // [rad]
+constexpr double kWayOfTurn = 0.3;                                            // [m/rad]
 
 std::optional<Pose2> OdometryOf(const RobotLog& log, const RobotLog::Scan& scan) {
   if (scan.X_OB) return scan.X_OB;
@@ -34,6 +40,20 @@ std::optional<Pose2> OdometryOf(const RobotLog& log, const RobotLog::Scan& scan)
   return std::nullopt;
 }
 
+/// A scan's moment by the odometry alone, less its jumps.
+struct Moment {
+  Pose2 X_OB;
+  double way{0.0};  // [m] until then; a turn counts as kWayOfTurn
+  bool is_in_path{false};
+};
+
+/// Whether what is believed at one moment agrees with what is believed at a later one.
+bool DoAgree(const Pose2& X_MB, const Moment& at, const Pose2& X_MLater, const Moment& later) {
+  const Pose2 off = (X_MLater * (later.X_OB.Inverse() * at.X_OB)).Inverse() * X_MB;
+  const double most = std::min(kAgreeing + kAgreeingOfWay * (later.way - at.way), kMostAgreeing);
+  return off.position().norm() <= most && std::abs(geometry::WrapToPi(off.yaw)) <= kAgreeingTurn;
+}
+
 class LogLocaliser {
  public:
   LogLocaliser(const RobotLog& log, MonteCarloLocalisation filter)
@@ -43,6 +63,10 @@ class LogLocaliser {
   LocalisedLog Result();
 
  private:
+  void TakeMoment(const Pose2& X_OB, ScanOutcome outcome);
+  /// Leaves out of the path what its end contradicts.
+  void JudgePath();
+  double WayKnown() const;
   /// From the estimate before to that at `time`.
   void TakeEstimate(double time, ScanOutcome outcome, const Pose2& X_OB);
 
@@ -51,7 +75,8 @@ class LogLocaliser {
   const RobotLog& log_;
   MonteCarloLocalisation filter_;
   LocalisedLog localised_;
-  std::optional<Pose2> X_OB_;  // at the scan before
+  std::optional<Pose2> X_OB_;    // at the scan before
+  std::vector<Moment> moments_;  // of all scans that have odometry
   int num_judged_{0}, num_judged_since_{0};
 };
 
@@ -62,6 +87,7 @@ void LogLocaliser::Take(const RobotLog::Scan& scan) {
     return;
   }
   const ScanOutcome outcome = filter_.Update(scan.time, *X_OB, scan.reading, scan.X_BL);
+  TakeMoment(*X_OB, outcome);
   TakeEstimate(scan.time, outcome, *X_OB);
   const PoseEstimate& estimate = localised_.last;
   const bool is_good = estimate.status == LocalisationStatus::kGood;
@@ -79,6 +105,42 @@ void LogLocaliser::Take(const RobotLog::Scan& scan) {
   if (!is_good) return;
   if (!localised_.localised_after) localised_.localised_after = SinceFirst(scan.time);
   localised_.path.push_back({scan.time, estimate.X_MB});
+  moments_.back().is_in_path = true;
+}
+
+void LogLocaliser::TakeMoment(const Pose2& X_OB, ScanOutcome outcome) {
+  Moment moment = moments_.empty() ? Moment{} : moments_.back();
+  moment.is_in_path = false;
+  if (X_OB_ && outcome != ScanOutcome::kOdometryJumped) {
+    const Pose2 step = X_OB_->Inverse() * X_OB;
+    moment.X_OB = moment.X_OB * step;
+    moment.way += step.position().norm() + kWayOfTurn * std::abs(geometry::WrapToPi(step.yaw));
+  }
+  moments_.push_back(moment);
+}
+
+void LogLocaliser::JudgePath() {
+  TimedPath kept;
+  const Moment* later = nullptr;  // of the last one that was kept
+  bool is_kept = true;            // the one behind
+  const TimedPose* behind = nullptr;
+  const Moment* at_behind = nullptr;
+  std::size_t left = localised_.path.size();
+  for (auto at = moments_.rbegin(); at != moments_.rend(); ++at) {
+    if (!at->is_in_path) continue;
+    const TimedPose& pose = localised_.path[--left];
+    const bool is_leap = behind && !DoAgree(pose.X_MB, *at, behind->X_MB, *at_behind);
+    if (is_leap) is_kept = DoAgree(pose.X_MB, *at, kept.back().X_MB, *later);
+    behind = &pose;
+    at_behind = &*at;
+    at->is_in_path = is_kept;
+    if (!is_kept) continue;
+    kept.push_back(pose);
+    later = at_behind;
+  }
+  localised_.num_contradicted = static_cast<int>(localised_.path.size() - kept.size());
+  std::reverse(kept.begin(), kept.end());
+  localised_.path = std::move(kept);
 }
 
 void LogLocaliser::TakeEstimate(double time, ScanOutcome outcome, const Pose2& X_OB) {
@@ -92,7 +154,17 @@ void LogLocaliser::TakeEstimate(double time, ScanOutcome outcome, const Pose2& X
   localised_.relocated_after = SinceFirst(time);
 }
 
+double LogLocaliser::WayKnown() const {
+  double known = 0.0;
+  for (std::size_t i = 0; i < moments_.size(); ++i)
+    if (moments_[i].is_in_path && i > 0) known += moments_[i].way - moments_[i - 1].way;
+  if (moments_.empty() || localised_.path.empty()) return 0.0;
+  return moments_.back().way > 0.0 ? known / moments_.back().way : 1.0;
+}
+
 LocalisedLog LogLocaliser::Result() {
+  JudgePath();
+  localised_.way_known = WayKnown();
   if (num_judged_ > 0) localised_.explained /= num_judged_;
   if (num_judged_since_ > 0) localised_.explained_since /= num_judged_since_;
   return std::move(localised_);
@@ -102,19 +174,29 @@ LocalisedLog LogLocaliser::Result() {
 
 std::string WhyDoubtful(const LocalisedLog& localised) {
   if (localised.path.empty()) return "";
-  const double num_poses = static_cast<double>(localised.path.size());
+  const double num_poses = static_cast<double>(localised.path.size()) + localised.num_contradicted;
   std::vector<std::string> against;
   if (localised.num_relocations >= kOftenElsewhere &&
       localised.num_relocations > kMostElsewhere * num_poses)
     against.push_back(fmt::format("it was found elsewhere {} times", localised.num_relocations));
   if (num_poses < kFewPoses * localised.num_since)
-    against.push_back(fmt::format("{} of {} scans since the first pose have none",
-                                  localised.num_since - localised.path.size(),
-                                  localised.num_since));
+    against.push_back(fmt::format("{:g} of {} scans since the first pose have none",
+                                  localised.num_since - num_poses, localised.num_since));
   if (localised.explained_since < kFewExplained)
     against.push_back(
         fmt::format("{:.0f} % of the beams are explained", 100.0 * localised.explained_since));
   return base::Join(against, ", ");
+}
+
+std::string WhyPartial(const LocalisedLog& localised) {
+  if (localised.path.empty() || localised.way_known >= kFewKnown) return "";
+  std::string text = fmt::format("where the robot was is known for {:.0f} % of its way",
+                                 100.0 * localised.way_known);
+  if (localised.num_contradicted > 0) {
+    text +=
+        fmt::format(", as {} poses before contradict those at last", localised.num_contradicted);
+  }
+  return text;
 }
 
 LocalisedLog LocaliseLog(const RobotLog& log, MonteCarloLocalisation filter,

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 
 #include "hires/base/error.h"
 #include "hires/localisation/localise_log.h"
@@ -518,6 +519,100 @@ TEST(LocaliseLogTest, AMapOfAnotherBuildingIsDoubtedAndThatOfThePlaceIsNot) {
                 !WhyDoubtful(elsewhere).empty())
         << elsewhere.path.size() << " poses of " << elsewhere.num_since << ", explained "
         << elsewhere.explained_since << ", elsewhere " << elsewhere.num_relocations;
+  }
+}
+
+/// Share of the path's poses that are off by more than 1 m.
+double ShareWrong(const TimedPath& path, const TimedPath& truth) {
+  int num_wrong = 0;
+  for (const TimedPose& pose : path) {
+    const auto at = std::find_if(truth.begin(), truth.end(),
+                                 [&](const TimedPose& t) { return t.time == pose.time; });
+    num_wrong += (pose.X_MB.position() - at->X_MB.position()).norm() > 1.0;
+  }
+  return path.empty() ? 0.0 : static_cast<double>(num_wrong) / static_cast<double>(path.size());
+}
+
+/// Somebody carries the robot on for a while, which neither laser nor odometry hears.
+void CarryOn(double from, double until, SimulatedDrive* drive) {
+  RobotLog carried;
+  TimedPath truth;
+  std::optional<Pose2> X_OB, X_NewOld;
+  for (const RobotLog::Odometry& odometry : drive->log.odometry) {
+    if (odometry.time >= from && odometry.time < until) continue;
+    RobotLog::Odometry told = odometry;
+    if (odometry.time < from) {
+      X_OB = odometry.reading.X_OB;
+    } else {
+      if (!X_NewOld) X_NewOld = *X_OB * odometry.reading.X_OB.Inverse();
+      told.time -= until - from;
+      told.reading.X_OB = *X_NewOld * odometry.reading.X_OB;
+    }
+    carried.odometry.push_back(told);
+  }
+  for (std::size_t i = 0; i < drive->log.scans.size(); ++i) {
+    RobotLog::Scan scan = drive->log.scans[i];
+    if (scan.time >= from && scan.time < until) continue;
+    if (scan.time >= until) scan.time -= until - from;
+    carried.scans.push_back(scan);
+    truth.push_back({scan.time, drive->truth[i].X_MB});
+  }
+  drive->log = carried;
+  drive->truth = truth;
+}
+
+TEST(LocaliseLogTest, PosesFromBeforeTheRobotWasFoundElsewhereAreLeftOut) {
+  int num_tested = 0;
+  for (int seed = 1; seed <= hires::test_support::Rounds(10); ++seed) {
+    SCOPED_TRACE(seed);
+    SimulatedDrive drive = Drive(seed, RoomsWithShelf());
+    CarryOn(8.0 + seed, 26.0 + seed, &drive);
+    const LocalisedLog found =
+        LocaliseLog(drive.log,
+                    MonteCarloLocalisation(RoomsWithShelf(), ParamsAt(drive.truth.front().X_MB),
+                                           base::Rng(seed)),
+                    "localising");
+    const double off = (found.last.X_MB.position() - drive.truth.back().X_MB.position()).norm();
+    if (found.last.status != LocalisationStatus::kGood || off > 0.3) continue;
+    ++num_tested;
+    EXPECT_GT(found.num_contradicted, 0);
+    EXPECT_EQ(ShareWrong(found.path, drive.truth), 0.0);
+    EXPECT_GT(found.path.front().time, 8.0 + seed) << "the odometry does not lead back behind it";
+    EXPECT_LT(found.way_known, 0.95);
+    EXPECT_EQ(WhyPartial(found).empty(), found.way_known >= 0.8);
+  }
+  EXPECT_GT(num_tested, 0);
+}
+
+/// Of a map that lacks the right room, poses in it are guesses.
+TEST(LocaliseLogTest, AMapOfHalfOfTheDriveIsPartialOrDoubtful) {
+  OccupancyGrid half = RoomsWithShelf();
+  for (int row = 0; row < half.height; ++row)
+    for (int column = half.width / 2; column < half.width; ++column)
+      half.cells[static_cast<std::size_t>(row) * half.width + column] = Cell::kUnknown;
+  for (int seed = 1; seed <= hires::test_support::Rounds(8); ++seed) {
+    SCOPED_TRACE(seed);
+    const SimulatedDrive drive = Drive(seed, RoomsWithShelf());
+    const LocalisedLog found = LocaliseFromAnywhere(drive.log, half, seed);
+    const bool is_good = found.last.status == LocalisationStatus::kGood &&
+                         WhyDoubtful(found).empty() && WhyPartial(found).empty();
+    EXPECT_FALSE(is_good && ShareWrong(found.path, drive.truth) > 0.2) << found.way_known;
+  }
+}
+
+TEST(LocaliseLogTest, ADriveInItsOwnMapIsNeitherPartialNorDoubtful) {
+  for (int seed = 1; seed <= hires::test_support::Rounds(20); ++seed) {
+    SCOPED_TRACE(seed);
+    const SimulatedDrive drive = Drive(seed, RoomsWithShelf());
+    for (const LocalisedLog& found :
+         {LocaliseFromAnywhere(drive.log, RoomsWithShelf(), seed),
+          LocaliseLog(drive.log,
+                      MonteCarloLocalisation(RoomsWithShelf(), ParamsAt(drive.truth[0].X_MB),
+                                             base::Rng(seed)),
+                      "localising")}) {
+      EXPECT_EQ(WhyDoubtful(found), "");
+      EXPECT_EQ(WhyPartial(found), "");
+    }
   }
 }
 

@@ -11,13 +11,15 @@ namespace hires::localisation {
 
 /// How a log was localised.
 struct LocalisedLog {
-  TimedPath path;  ///< the robot at each scan from when it first knew where it was; scans while it
-                   ///< did not are left out
+  /// The robot at each scan from when it first knew where it was. Scans while it did not are left
+  /// out, and so are poses that what it believed at last contradicts.
+  TimedPath path;
+  int num_contradicted{0};  ///< poses that were left out for that
+  double way_known{0.0};    ///< share in [0, 1] of the way that ends in poses of the path
   std::map<ScanOutcome, int> outcomes;         ///< how many scans became what
   std::map<LocalisationStatus, int> statuses;  ///< at the end of how many scans it was what
   int num_without_odometry{0};                 ///< scans that no odometry is near
-  /// How often it first knew a place and then found the robot more than 1 m from there: before that
-  /// the path may be wrong.
+  /// How often it first knew a place and then found the robot more than 1 m from there.
   int num_relocations{0};
   double explained{0.0};  ///< mean over the scans that were judged: share of beams that end near an
                           ///< obstacle of the map
@@ -33,8 +35,17 @@ struct LocalisedLog {
 /// on have none, or that less than 65 % of the beams are explained from there. Empty: nothing does.
 std::string WhyDoubtful(const LocalisedLog& localised);
 
+/// What speaks against the path being one of the drive: more than a fifth of the way (metres and,
+/// as 0.3 m each, radians) was driven where it was not known, or known wrongly. Empty: nothing.
+std::string WhyPartial(const LocalisedLog& localised);
+
 /// Lets a filter hear all scans of a log, each with the odometry of its time: as the log itself
 /// says it, else between the readings around it, or the nearest one within 0.5 s.
+///
+/// A filter that was wrong and finds out goes elsewhere at once, where the odometry did not go. The
+/// poses of the path are therefore judged from its end: what the last ones say, carried back by the
+/// odometry, is what those before such a leap must agree with (within 1 m and a tenth of the way
+/// between, 2 m at most, and 0.5 rad); those that do not are left out.
 /// @param task  what is done, for those who wait: "localising drive.log".
 LocalisedLog LocaliseLog(const RobotLog& log, MonteCarloLocalisation filter,
                          const std::string& task);

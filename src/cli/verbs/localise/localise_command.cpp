@@ -37,11 +37,13 @@ struct Answer {
 
   /// What speaks against this map; empty: nothing does.
   std::string doubt() const { return localisation::WhyDoubtful(localised); }
-  bool is_localised() const {
-    return localised.last.status == localisation::LocalisationStatus::kGood && doubt().empty();
-  }
+  std::string gap() const { return localisation::WhyPartial(localised); }
+  bool is_localised() const { return status() == "good"; }
   std::string status() const {
-    return doubt().empty() ? localisation::ToString(localised.last.status) : "doubtful";
+    if (!doubt().empty()) return "doubtful";
+    const bool is_partial =
+        localised.last.status == localisation::LocalisationStatus::kGood && !gap().empty();
+    return is_partial ? "partial" : localisation::ToString(localised.last.status);
   }
   bool has_path() const { return !localised.path.empty() && doubt().empty(); }
   Eigen::Vector3d sd() const {
@@ -133,6 +135,8 @@ ordered_json ToJson(const Answer& answer, const LocaliseOptions& options) {
           {"explained", localised.explained},
           {"in_walls", answer.in_walls},
           {"localised_after", OrNull(localised.localised_after)},
+          {"way_known", localised.way_known},
+          {"contradicted", localised.num_contradicted},
           {"relocations", localised.num_relocations},
           {"relocated_after", OrNull(localised.relocated_after)},
           {"scans_by_outcome", outcomes},
@@ -150,11 +154,31 @@ std::string WhenLocalised(const Answer& answer) {
   std::string text = fmt::format("after {:.1f} s; poses of {} scans", *localised.localised_after,
                                  localised.path.size());
   if (localised.num_relocations > 0) {
-    text +=
-        fmt::format("; found elsewhere {} times, last after {:.1f} s: poses before may be wrong",
-                    localised.num_relocations, *localised.relocated_after);
+    text += fmt::format("; found elsewhere {} times, last after {:.1f} s",
+                        localised.num_relocations, *localised.relocated_after);
+  }
+  if (localised.num_contradicted > 0) {
+    text += fmt::format(": {} poses that the last ones contradict are left out",
+                        localised.num_contradicted);
   }
   return text;
+}
+
+/// The last line; empty: nothing is.
+std::string WhatIsDoubtful(const Answer& answer, const LocaliseOptions& options) {
+  if (answer.doubt().empty()) return "";
+  constexpr double kOften = 0.2;  // of the scans
+  const auto jumped = answer.localised.outcomes.find(localisation::ScanOutcome::kOdometryJumped);
+  const int num_jumped = jumped == answer.localised.outcomes.end() ? 0 : jumped->second;
+  if (num_jumped > kOften * answer.num_scans) {
+    return fmt::format(
+        "{}: odometry jumped at {} of {} scans: is it in metres and radians, not in millimetres or "
+        "degrees? ({}); no trajectory is written\n",
+        options.drive.log, num_jumped, answer.num_scans, answer.doubt());
+  }
+  return fmt::format(
+      "{} is probably not a map of where {} was recorded: {}; no trajectory is written\n",
+      options.map, options.drive.log, answer.doubt());
 }
 
 std::string Summary(const Answer& answer, const LocaliseOptions& options) {
@@ -176,11 +200,8 @@ std::string Summary(const Answer& answer, const LocaliseOptions& options) {
          Line("explained", fmt::format("{:.0f} % of the beams", 100.0 * localised.explained)) +
          (walls.empty() ? "" : Line("in walls", walls)) + Line("status", answer.status()) +
          Line("seed", std::to_string(options.seed)) +
-         (answer.doubt().empty()
-              ? ""
-              : fmt::format("{} is probably not a map of where {} was recorded: {}; no trajectory "
-                            "is written\n",
-                            options.map, options.drive.log, answer.doubt()));
+         (answer.status() == "partial" ? "partial: " + answer.gap() + "\n" : "") +
+         WhatIsDoubtful(answer, options);
 }
 
 Answer Localise(const LocaliseOptions& options, const localisation::MonteCarloParams& defaults,
