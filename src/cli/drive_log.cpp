@@ -91,8 +91,11 @@ void WarnOfGaps(const localisation::RobotLog& drive, const std::string& log) {
   base::Log(
       base::LogLevel::kWarn,
       fmt::format("{}: no scan for more than {:g} s, {} times, the longest {:.1f} s, {:.1f} s "
-                  "after the first: the odometry alone tells how the robot moved meanwhile",
-                  log, kLongest, count, longest, at));
+                  "after the first: the odometry alone tells how the robot moved meanwhile{}",
+                  log, kLongest, count, longest, at,
+                  2 * static_cast<std::size_t>(count) > drive.scans.size()
+                      ? ". Are its times in milliseconds? Divide them by 1000"
+                      : ""));
 }
 
 }  // namespace

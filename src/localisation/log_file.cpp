@@ -6,8 +6,10 @@
 #include <charconv>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <set>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "hires/base/check.h"
@@ -19,6 +21,7 @@
 #include "hires/geometry/angles.h"
 #include "localisation/laser_maximum.h"
 #include "localisation/log_repair.h"
+#include "localisation/odometry_units.h"
 
 namespace hires::localisation {
 namespace {
@@ -29,10 +32,12 @@ constexpr std::size_t kMostLogBytes = std::size_t{1} << 30;
 constexpr int kMostLogLines = 20'000'000;
 constexpr int kMostRanges = 100'000;       // of a scan; remissions, too
 constexpr double kMostTime = 1e11;         // [s]
+constexpr double kMostReadTime = 1e20;     // of any unit
 constexpr double kMostCoordinate = 1e6;    // [m], [rad]
 constexpr double kLatest = 1.0;            // [s] by which a line may come too late
 constexpr double kCarmenMaxRange = 80.0;   // [m] what CARMEN assumes of FLASER
 constexpr double kCarmenMinRange = 0.01;   // [m] its accuracy there; 0 is no measurement
+constexpr double kSameSpan = 0.02;         // [rad] up to the digits that are written
 constexpr double kSameMounting = 0.05;     // [m], [rad] between two lines
 constexpr double kSamePose = 1e-3;         // [m], [rad] up to the digits that are written
 constexpr double kFarthestMounting = 3.0;  // [m] from the base
@@ -46,16 +51,59 @@ struct OddLine {
   bool is_short{false};  // its words end too early
 };
 
+/// What a file is that is no CARMEN log, by how it begins, and what to do; empty: it may be one.
+std::string OtherKindOf(std::string_view text) {
+  using namespace std::string_view_literals;
+  constexpr std::pair<std::string_view, const char*> kKinds[] = {
+      {"\x1f\x8b"sv, "is packed: gunzip it"},
+      {"BZh"sv, "is packed: bunzip2 it"},
+      {"\xfd"
+       "7zXZ"sv,
+       "is packed: unxz it"},
+      {"\x28\xb5\x2f\xfd"sv, "is packed: unzstd it"},
+      {"PK\x03\x04"sv, "is packed: unzip it"},
+      {"\xff\xfe"sv,
+       "is UTF-16 text; wanted ASCII or UTF-8: convert it (iconv -f UTF-16 -t UTF-8)"},
+      {"\xfe\xff"sv,
+       "is UTF-16 text; wanted ASCII or UTF-8: convert it (iconv -f UTF-16 -t UTF-8)"},
+      {"SQLite format 3"sv,
+       "is a ROS 2 bag: convert it to one of ROS 1 (rosbags-convert of the package rosbags)"},
+      {"\x89MCAP"sv,
+       "is a ROS 2 bag: convert it to one of ROS 1 (rosbags-convert of the package rosbags)"}};
+  for (const auto& [begin, what] : kKinds)
+    if (text.substr(0, begin.size()) == begin) return what;
+  return "";
+}
+
+/// Of a time that is too large for seconds: what it may be in, and the power of ten of that.
+std::pair<const char*, int> UnitOfTime(double time) {
+  if (std::abs(time) < 1e14) return {"milliseconds", 3};
+  return std::abs(time) < 1e17 ? std::make_pair("microseconds", 6)
+                               : std::make_pair("nanoseconds", 9);
+}
+
+/// A number may begin with a plus, which std::from_chars does not take.
+std::string_view WithoutPlus(std::string_view word) {
+  const bool is_signed = word.size() > 1 && word[0] == '+' && word[1] != '-' && word[1] != '+';
+  return is_signed ? word.substr(1) : word;
+}
+
 class CarmenReader {
  public:
   explicit CarmenReader(const std::string& path)
-      : path_(path), text_(base::ReadTextFile(path, kMostLogBytes)) {}
+      : path_(path), text_(base::ReadTextFile(path, kMostLogBytes)) {
+    const std::string other = OtherKindOf(text_);
+    if (!other.empty()) throw base::ConfigError(path_ + ": " + other);
+    if (text_.find('\n') == std::string::npos)  // an old Mac's ends of lines
+      std::replace(text_.begin(), text_.end(), '\r', '\n');
+  }
   RobotLog Read();
 
  private:
   [[noreturn]] void Fail(const std::string& what) const { throw base::ConfigError(Where(what)); }
-  std::string Where(const std::string& what) const {
-    return fmt::format("{}: line {}: {}", path_, line_, what);
+  std::string Where(const std::string& what) const { return path_ + ": " + InLine(what); }
+  std::string InLine(const std::string& what) const {
+    return fmt::format("line {}: {}", line_, what);
   }
   [[noreturn]] static void Odd(const std::string& what, bool is_short = false) {
     throw OddLine{what, is_short};
@@ -65,7 +113,8 @@ class CarmenReader {
   }
 
   void SplitLine(std::string_view line);
-  void TakeLine();
+  void TakeLine(std::string_view line);
+  bool Repeats(std::string_view line);
   void PassOverOdd(const OddLine& odd, std::size_t end);
   void TakeParam();
   void TakeOdometry();
@@ -73,8 +122,11 @@ class CarmenReader {
   void TakeRobotLaser();
   bool RepeatsLastScan(const Pose2& pose, double time) const;
   bool IsOfTheFirstKind();
+  double Angle(std::size_t index, const char* what, double most) const;
+  double IncrementOf(std::size_t n, double start, double fov, double resolution);
   void TakePoses(std::size_t first, RobotLog::Scan* scan);
-  void AddScan(RobotLog::Scan scan);
+  void AddScan(RobotLog::Scan scan, std::size_t first_of_odometry);
+  void TakeUnits(std::size_t first, double time, OdometryUnits* units) const;
   void PassOver();
 
   void WantWords(std::size_t count, const std::string& form) const;
@@ -96,6 +148,7 @@ class CarmenReader {
 
   std::string path_, text_;
   std::vector<std::string_view> words_;  // of the line that is read
+  std::string_view last_line_;
   int line_{0};
   RobotLog log_;
   LogLines lines_;
@@ -104,7 +157,11 @@ class CarmenReader {
   double range_max_{kCarmenMaxRange};  // of FLASER
   double laser_offset_{0.0};           // PARAM robot_frontlaser_offset
   bool is_corrected_{false};           // the laser's place on the robot changes
-  int num_repeated_{0};                // lines ODOM with which a mapper repeats a scan's pose
+  int num_repeated_lines_{0};          // that are equal to the one before
+  OdometryUnits units_, units_of_scans_;
+  std::string angles_doubt_;  // what was assumed of the first scan that tells them badly
+  std::map<std::string, int> other_lasers_;  // lines of kinds that are not read
+  int num_repeated_{0};                      // lines ODOM with which a mapper repeats a scan's pose
   double last_odometry_{-kMostTime}, last_scan_{-kMostTime};  // latest times so far
   int late_lines_{0};
   double latest_{0.0};           // [s] the worst of them
@@ -119,9 +176,10 @@ RobotLog CarmenReader::Read() {
     if (++line_ > kMostLogLines)
       Fail(fmt::format("is one line more than the {} that are read", kMostLogLines));
     const std::size_t end = std::min(text_.find('\n', begin), text_.size());
-    SplitLine(std::string_view(text_).substr(begin, end - begin));
+    const std::string_view line = std::string_view(text_).substr(begin, end - begin);
+    SplitLine(line);
     try {
-      if (!words_.empty()) TakeLine();
+      if (!words_.empty()) TakeLine(line);
     } catch (const OddLine& odd) {
       PassOverOdd(odd, end);
     }
@@ -144,7 +202,8 @@ void CarmenReader::SplitLine(std::string_view line) {
   }
 }
 
-void CarmenReader::TakeLine() {
+void CarmenReader::TakeLine(std::string_view line) {
+  if (Repeats(line)) return;
   if (words_[0] == "ODOM") {
     TakeOdometry();
   } else if (words_[0] == "FLASER") {
@@ -157,6 +216,18 @@ void CarmenReader::TakeLine() {
     return PassOver();
   }
   ++num_readable_;
+}
+
+/// Loggers that hear a message twice write its line twice, with its time.
+bool CarmenReader::Repeats(std::string_view line) {
+  if (line != last_line_) {
+    last_line_ = line;
+    return false;
+  }
+  const bool is_reading =
+      words_[0] == "ODOM" || words_[0] == "FLASER" || words_[0] == "ROBOTLASER1";
+  if (is_reading) ++num_repeated_lines_;
+  return is_reading;
 }
 
 /// @param end  of the line in the text.
@@ -184,6 +255,9 @@ void CarmenReader::PassOver() {
                     "or the name of another message",
                     base::Shortened(name, 40)));
   }
+  const bool is_laser =
+      name == "RLASER" || name.rfind("ROBOTLASER", 0) == 0 || name.rfind("RAWLASER", 0) == 0;
+  if (is_laser) ++other_lasers_[name];
   if (name == "SYNC" || name == "RLASER") return;
   if (passed_over_.size() < 100) passed_over_.insert(name);
 }
@@ -214,6 +288,7 @@ void CarmenReader::TakeOdometry() {
     return;
   }
   odometry.time = InOrder(time, &last_odometry_);
+  TakeUnits(1, time, &units_);
   log_.odometry.push_back(odometry);
   lines_.odometry.push_back(line_);
 }
@@ -242,10 +317,17 @@ void CarmenReader::TakeFrontLaser() {
   scan.reading.angle_min = -geometry::kPi / 2.0;
   scan.reading.angle_increment = n < 2 ? 0.0 : geometry::kPi / static_cast<double>(n - n % 2);
   scan.reading.range_min = kCarmenMinRange;
+  // Lasers of 180 degrees have steps of 1, 0.5 or 0.25.
+  if (angles_doubt_.empty() && n > 2 && 720 % (n - n % 2) != 0) {
+    angles_doubt_ = InLine(fmt::format(
+        "FLASER of {} ranges says no angles; taken are steps of 180 degrees / {} from -90 degrees "
+        "on. If the laser sees another angle, write lines ROBOTLASER1, which say theirs",
+        n, n - n % 2));
+  }
   scan.reading.range_max = range_max_;
   scan.reading.ranges = Ranges(2, n, kCarmenMinRange);
   TakePoses(2 + n, &scan);
-  AddScan(std::move(scan));
+  AddScan(std::move(scan), 5 + n);
 }
 
 void CarmenReader::TakeRobotLaser() {
@@ -255,15 +337,48 @@ void CarmenReader::TakeRobotLaser() {
             "ROBOTLASER1 type start_angle fov resolution max_range accuracy mode, n, n ranges, m, "
             "m remissions, x y theta of laser and robot, tv rv forward side turn_axis");
   RobotLog::Scan scan;
-  scan.reading.angle_min = Number(2, "start_angle", -2.0 * geometry::kPi, 2.0 * geometry::kPi);
-  scan.reading.angle_increment = Number(4, "angular resolution", -geometry::kPi, geometry::kPi);
-  if (scan.reading.angle_increment == 0.0 && n > 1)
-    Odd("angular resolution is 0; wanted the angle between two beams [rad]");
+  scan.reading.angle_min = Angle(2, "start_angle", 2.0 * geometry::kPi);
+  scan.reading.angle_increment =
+      IncrementOf(n, scan.reading.angle_min, Number(3, "fov", -kMostCoordinate, kMostCoordinate),
+                  Angle(4, "angular resolution", geometry::kPi));
   scan.reading.range_min = kCarmenMinRange;
   scan.reading.range_max = Number(5, "max_range", 0.0, 1e6);
   scan.reading.ranges = Ranges(9, n, kCarmenMinRange);
   TakePoses(10 + n + m, &scan);
-  AddScan(std::move(scan));
+  AddScan(std::move(scan), 13 + n + m);
+}
+
+/// [rad] from -most to most.
+double CarmenReader::Angle(std::size_t index, const char* what, double most) const {
+  const double angle = Number(index, what, -kMostCoordinate, kMostCoordinate);
+  if (std::abs(angle) <= most) return angle;
+  Odd(
+      fmt::format("{} is '{}'; wanted radians, a number from {:.6g} to {:.6g}: are the angles in "
+                  "degrees? Multiply them by 0.0174533",
+                  what, std::string(words_[index]), -most, most));
+}
+
+/// By `resolution`, as CARMEN takes it, if `fov` does not say something else that goes better with
+/// the first beam, as of a laser that looks as far to the left as to the right.
+double CarmenReader::IncrementOf(std::size_t n, double start, double fov, double resolution) {
+  if (n < 2) return resolution;
+  if (std::abs(fov) > 2.0 * geometry::kPi + kSameSpan) fov = 0.0;  // degrees, or anything
+  const double steps = static_cast<double>(n - 1), by_fov = fov / steps;
+  if (resolution == 0.0 && fov == 0.0)
+    Odd("angular resolution and fov are 0; wanted the angle between two beams [rad]");
+  // Some count a step for the last beam, too.
+  const double span = resolution * steps, off = std::abs(std::abs(span) - std::abs(fov));
+  if (resolution != 0.0 && (fov == 0.0 || off < 1.5 * std::abs(resolution) + kSameSpan))
+    return resolution;
+  const bool is_by_fov =
+      resolution == 0.0 || std::abs(start + fov / 2.0) < std::abs(start + span / 2.0);
+  if (angles_doubt_.empty()) {
+    angles_doubt_ = InLine(fmt::format(
+        "ROBOTLASER1 of {} ranges says a resolution of {:.6g} rad, {:.6g} rad in all, and a fov of "
+        "{:.6g} rad; taken is the {}, as the first beam is at {:.6g} rad",
+        n, resolution, span, fov, is_by_fov ? "fov" : "resolution", start));
+  }
+  return is_by_fov ? by_fov : resolution;
 }
 
 /// Of laser and odometry, one behind the other.
@@ -273,8 +388,10 @@ void CarmenReader::TakePoses(std::size_t first, RobotLog::Scan* scan) {
   scan->X_BL = scan->X_OB->Inverse() * X_OL;
 }
 
-void CarmenReader::AddScan(RobotLog::Scan scan) {
+/// @param first_of_odometry  word
+void CarmenReader::AddScan(RobotLog::Scan scan, std::size_t first_of_odometry) {
   scan.time = InOrder(Time(), &last_scan_);
+  TakeUnits(first_of_odometry, scan.time, &units_of_scans_);
   laser_kind_ = words_[0];
   const Pose2& first = log_.scans.empty() ? scan.X_BL : log_.scans.front().X_BL;
   const bool is_same = (scan.X_BL.position() - first.position()).norm() <= kSameMounting &&
@@ -282,6 +399,14 @@ void CarmenReader::AddScan(RobotLog::Scan scan) {
   if (!is_same || scan.X_BL.position().norm() > kFarthestMounting) is_corrected_ = true;
   log_.scans.push_back(std::move(scan));
   lines_.scans.push_back(line_);
+}
+
+/// Of the pose as the line has it, whose angle is not wrapped.
+void CarmenReader::TakeUnits(std::size_t first, double time, OdometryUnits* units) const {
+  const auto number = [&](std::size_t i) {
+    return Number(first + i, "pose", -kMostCoordinate, kMostCoordinate);
+  };
+  units->Take(number(0), number(1), number(2), time);
 }
 
 /// @param count  of the words before those of the time.
@@ -293,20 +418,20 @@ void CarmenReader::WantWords(std::size_t count, const std::string& form) const {
 }
 
 double CarmenReader::Number(std::size_t index, const char* what, double least, double most) const {
-  const std::string_view word = words_[index];
+  const std::string_view word = WithoutPlus(words_[index]);
   double number = 0.0;
   const auto [rest, error] = std::from_chars(word.data(), word.data() + word.size(), number);
   const bool is_number = error == std::errc() && rest == word.data() + word.size();
   if (!is_number || !(number >= least && number <= most)) {
     Odd(fmt::format("{} is '{}'; wanted a number from {} to {}", what,
-                    base::Shortened(std::string(word), 40), least, most));
+                    base::Shortened(std::string(words_[index]), 40), least, most));
   }
   return number;
 }
 
 std::size_t CarmenReader::Count(std::size_t index, const char* what) const {
   if (index >= words_.size()) Odd(fmt::format("{} ends before its {}", words_[0], what), true);
-  const std::string_view word = words_[index];
+  const std::string_view word = WithoutPlus(words_[index]);
   std::size_t number = 0;
   const auto [rest, error] = std::from_chars(word.data(), word.data() + word.size(), number);
   if (error != std::errc() || rest != word.data() + word.size() || number > kMostRanges) {
@@ -327,8 +452,15 @@ Pose2 CarmenReader::Pose(std::size_t index, const char* what) const {
 
 /// Of the readings; the last three words say it.
 double CarmenReader::Time() const {
-  Number(words_.size() - 1, "logger_timestamp", -kMostTime, kMostTime);
-  return Number(words_.size() - 3, "ipc_timestamp", -kMostTime, kMostTime);
+  const auto time = [&](std::size_t index, const char* what) {
+    const double number = Number(index, what, -kMostReadTime, kMostReadTime);
+    if (std::abs(number) <= kMostTime) return number;
+    const auto [unit, power] = UnitOfTime(number);
+    Odd(fmt::format("{} is {:.0f}; wanted seconds: is it in {}? Divide it by 1e{}", what, number,
+                    unit, power));
+  };
+  time(words_.size() - 1, "logger_timestamp");
+  return time(words_.size() - 3, "ipc_timestamp");
 }
 
 double CarmenReader::InOrder(double time, double* last) {
@@ -352,7 +484,7 @@ std::vector<float> CarmenReader::Ranges(std::size_t first, std::size_t count,
   constexpr float kInvalid = std::numeric_limits<float>::quiet_NaN();
   std::vector<float> ranges(count);
   for (std::size_t i = 0; i < count; ++i) {
-    const std::string_view word = words_[first + i];
+    const std::string_view word = WithoutPlus(words_[first + i]);
     const auto [rest, error] = std::from_chars(word.data(), word.data() + word.size(), ranges[i]);
     if (error == std::errc::result_out_of_range) {
       ranges[i] = kInvalid;  // 1e-60, 1e60
@@ -373,9 +505,8 @@ void CarmenReader::Finish() {
                     "mapper has corrected the log: passed over",
                     num_repeated_));
   }
-  for (const std::string& what :
-       {SpreadEqualTimes(lines_, &log_), LeaveOutContradicting(lines_, &log_)})
-    if (!what.empty()) Warn(what);
+  const std::string spread = SpreadEqualTimes(lines_, &log_);
+  if (!spread.empty()) Warn(spread);
   if (late_lines_ > 0) {
     Warn(fmt::format("{} lines are older than one before them, by up to {:.3f} s; put in order",
                      late_lines_, latest_));
@@ -383,10 +514,14 @@ void CarmenReader::Finish() {
   const auto earlier = [](const auto& a, const auto& b) { return a.time < b.time; };
   std::stable_sort(log_.odometry.begin(), log_.odometry.end(), earlier);
   std::stable_sort(log_.scans.begin(), log_.scans.end(), earlier);
+  const std::string contradicting = LeaveOutContradicting(&log_);
+  if (!contradicting.empty()) Warn(contradicting);
   if (is_corrected_) MountCorrectedLaser();
-  if (log_.odometry.empty()) TakeOdometryOfScans();
-  const std::string maximum = TakeLaserMaximum(&log_);
-  if (!maximum.empty()) Warn(maximum);
+  const bool has_odometry = !log_.odometry.empty();
+  if (!has_odometry) TakeOdometryOfScans();
+  for (const std::string& what :
+       {TakeLaserMaximum(&log_), angles_doubt_, (has_odometry ? units_ : units_of_scans_).Doubt()})
+    if (!what.empty()) Warn(what);
   SayWhatWasPassedOver();
 }
 
@@ -436,6 +571,19 @@ void CarmenReader::SayWhatWasPassedOver() const {
   }
   if (!cut_.empty())
     base::Log(base::LogLevel::kWarn, cut_ + "; the log's last line, which is cut off: passed over");
+  if (num_repeated_lines_ > 0) {
+    Warn(fmt::format("{} lines are equal to the one before, with its time: passed over",
+                     num_repeated_lines_));
+  }
+  if (log_.scans.empty() && !other_lasers_.empty()) {
+    std::vector<std::string> kinds;
+    for (const auto& [name, count] : other_lasers_)
+      kinds.push_back(fmt::format("{} {}", count, name));
+    Warn(
+        fmt::format("lines of other lasers are not read: {}; FLASER and ROBOTLASER1 are: rename "
+                    "those of the laser that is meant, if they have the same form",
+                    base::Join(kinds, ", ")));
+  }
   if (passed_over_.empty()) return;
   base::Log(base::LogLevel::kInfo,
             fmt::format("{}: passed over lines of {}", path_, NamesPassedOver()));

@@ -150,11 +150,11 @@ std::string SpreadEqualTimes(const LogLines& lines, RobotLog* log) {
       num_same, readings.size(), kUsualSpeed, kUsualSpeed);
 }
 
-std::string LeaveOutContradicting(const LogLines& lines, RobotLog* log) {
+std::string LeaveOutContradicting(RobotLog* log) {
   Agreement agreement;
   std::size_t next = 0;  // odometry behind the scan
   for (std::size_t i = 0; i < log->scans.size(); ++i) {
-    while (next < log->odometry.size() && lines.odometry[next] < lines.scans[i]) ++next;
+    while (next < log->odometry.size() && log->odometry[next].time <= log->scans[i].time) ++next;
     const auto pose = [&](std::size_t k) {
       return k < log->odometry.size() ? &log->odometry[k].reading.X_OB : nullptr;
     };

@@ -20,8 +20,9 @@ struct LogLines {
 std::string SpreadEqualTimes(const LogLines& lines, RobotLog* log);
 
 /// Leaves out the poses of scans where they contradict the odometry: more than 1 m or 1 rad from
-/// that of the readings before and behind them, for more than a tenth of them.
+/// that of the readings before and behind them in time, for more than a tenth of them.
+/// @pre readings are in the order of time, as far as that is known (SpreadEqualTimes).
 /// @return what to warn of; empty where they agree.
-std::string LeaveOutContradicting(const LogLines& lines, RobotLog* log);
+std::string LeaveOutContradicting(RobotLog* log);
 
 }  // namespace hires::localisation

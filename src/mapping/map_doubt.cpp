@@ -30,6 +30,7 @@ constexpr double kMostThrough = 0.008;  // of the beams
 constexpr double kLeastExplained = 0.6;
 constexpr int kFewLost = 20;
 constexpr double kLeastAlike = 0.5;      // of the turns
+constexpr double kMostJumps = 0.2;       // of the scans
 constexpr double kMostLost = 1.0 / 3.0;  // of the scans
 
 class Walls {
@@ -163,6 +164,11 @@ std::string WhyDoubtful(const MapCounts& counts, const MapEvidence& evidence) {
 
 std::string WhatToDo(const MapCounts& counts, const MapEvidence& evidence) {
   std::vector<std::string> remedies;
+  if (counts.odometry_jumps > kMostJumps * counts.num_scans)
+    remedies.push_back(fmt::format(
+        "odometry jumped {} times at {} scans: is it in metres and radians, not in millimetres or "
+        "degrees?",
+        counts.odometry_jumps, counts.num_scans));
   if (evidence.explained < kLeastExplained || evidence.through_walls > kMostThrough ||
       AreTurnsUnlike(counts))
     remedies.push_back(

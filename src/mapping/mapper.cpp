@@ -69,6 +69,10 @@ std::string QuestionOfUnits(const RobotLog& log) {
       if (std::isfinite(range) && range > 0.0F) ranges.push_back(range);
   }
   if (ranges.empty()) return "";
+  const auto [least, most] = std::minmax_element(ranges.begin(), ranges.end());
+  if (*least == *most) {
+    return fmt::format("; all its ranges are {:g}, as a laser says where it meets nothing", *most);
+  }
   const auto middle = ranges.begin() + static_cast<std::ptrdiff_t>(ranges.size() / 2);
   std::nth_element(ranges.begin(), middle, ranges.end());
   if (*middle < kSuspicious) return "";

@@ -17,6 +17,7 @@ using test_support::SimulatedDrive;
 using test_support::SimulatedDriveParams;
 using test_support::TrajectoryRms;
 using testing::HasSubstr;
+using testing::Not;
 
 std::string DoubtOf(const MapResult& result) { return WhyDoubtful(result, result.evidence); }
 
@@ -174,6 +175,12 @@ TEST(MapDoubtTest, EachReasonIsSaidWithARemedy) {
   evidence.explained = 0.55;
   EXPECT_THAT(WhyDoubtful(counts, evidence), HasSubstr("55 % of the beams ended"));
   EXPECT_THAT(WhatToDo(counts, evidence), HasSubstr("order, angles and unit"));
+  counts.num_scans = 100;
+  counts.odometry_jumps = 20;
+  EXPECT_THAT(WhatToDo(counts, evidence), Not(HasSubstr("millimetres")));
+  counts.odometry_jumps = 21;
+  EXPECT_THAT(WhatToDo(counts, evidence),
+              HasSubstr("odometry jumped 21 times at 100 scans: is it"));
 }
 
 }  // namespace

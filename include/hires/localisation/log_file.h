@@ -18,7 +18,9 @@ namespace hires::localisation {
 /// Lines that cannot be read (words missing or too many, no number, a time more than 1 s before an
 /// earlier one of its kind, no name of a message) are passed over, with a warning that counts them
 /// and tells of the first where, what came and what was wanted, as long as they are at most 1 % of
-/// those and the lines ODOM, FLASER and ROBOTLASER1 that can be read. A last line that is cut off
+/// those and the lines ODOM, FLASER and ROBOTLASER1 that can be read. Lines of these kinds that are
+/// equal to the one before are passed over, with a warning. A number may begin with a plus, and
+/// lines may end as on an old Mac. A last line that is cut off
 /// (without an end of line, or with words missing) is passed over with a warning of its own.
 ///
 /// Times are those of `ipc` [s], when a reading was made, on one clock for all kinds; `logger`
@@ -33,6 +35,10 @@ namespace hires::localisation {
 /// range of a log stands in it again and again, as what the laser says where it meets nothing, that
 /// is the `range_max` of its scans of either kind, with a warning.
 ///
+/// A warning says where n is of no usual laser. ROBOTLASER1 tells its angles; where fov, resolution
+/// and n disagree by more than a step, that one of fov and resolution counts by which the laser
+/// looks as far to the left as to the right, with a warning, and fov where the resolution is 0.
+///
 /// Where the laser sits on the robot follows from the two poses of its line. If that changes
 /// between lines, a mapper has corrected the log: then PARAM robot_frontlaser_offset says it (0
 /// where it is missing, CARMEN's default), with a warning.
@@ -42,14 +48,16 @@ namespace hires::localisation {
 ///
 /// Odometry is that of the lines ODOM; without any, that of the scans, with velocities from
 /// differences. Scans keep their own where it agrees with the lines ODOM; else it is left out, with
-/// a warning. Lines ODOM of time 0 that repeat the pose of the scan before them, as mappers write
-/// them into logs that they correct, are passed over, with a warning. A log that has FLASER and
-/// ROBOTLASER1 gives the scans of what comes first. What is no number, negative or below range_min
-/// is kept in a scan as NaN.
+/// a warning. Where most moves or turns are faster than any robot a warning asks whether odometry
+/// is in millimetres, centimetres or degrees. Lines ODOM of time 0 that repeat the pose of the scan
+/// before them, as mappers write them into logs that they correct, are passed over, with a warning.
+/// A log that has FLASER and ROBOTLASER1 gives the scans of what comes first. What is no number,
+/// negative or below range_min is kept in a scan as NaN.
 ///
 /// @throws base::ConfigError naming file and line, what came and what was wanted: no such file,
 /// more lines that cannot be read than 1 %, one of those two parameters that is no number, absurd
-/// sizes, no scan and no odometry at all.
+/// sizes, angles of ROBOTLASER1 or times that are in another unit, no scan and no odometry at all,
+/// a file of another kind (packed, UTF-16, a bag of ROS 2).
 RobotLog ReadCarmenLog(const std::string& path);
 
 /// Writes lines ODOM and ROBOTLASER1, which ReadCarmenLog reads again, up to the digits that are
