@@ -22,7 +22,6 @@ namespace {
 using area_keys::Find;
 using area_keys::NumbersOf;
 
-constexpr double kFarthest = 1000.0;  // [m] of an area, as in an SDF world
 constexpr double kLengthSlack = 0.1;  // of a quaternion, which people round
 constexpr char kNoTurn[] = "goals without an orientation have a yaw of 0";
 constexpr int kDeepest = 16;         // maps and lists in one another
@@ -224,7 +223,8 @@ class AreaReader {
           fmt::format("{}:{}: has more than {} goals; leave those out that are no question", path_,
                       line, kMostAreas));
     }
-    if (pose) areas_.push_back({name, *pose});
+    if (pose) areas_.push_back({name, *pose, height_});
+    height_.reset();
   }
 
   std::optional<geometry::Pose2> PoseOfList(const YAML::Node& list) {
@@ -235,7 +235,7 @@ class AreaReader {
     if (n.size() == 7) {
       const std::optional<double> yaw = YawOf({n[3], n[4], n[5], n[6]}, false, line);
       if (!yaw) return std::nullopt;
-      NoteHeight(line, n[2]);
+      TakeHeight(line, n[2]);
       return Pose(line, n[0], n[1], yaw);
     }
     Fail(line, fmt::format("a list of {} numbers, wanted [x, y, yaw] [m, m, rad], or 7: position "
@@ -287,7 +287,7 @@ class AreaReader {
                                (*position)[2]));
         return std::nullopt;
       }
-      NoteHeight(LineOf(own ? own : map), (*position)[2]);
+      TakeHeight(LineOf(own ? own : map), (*position)[2]);
     }
     return Pose(line, (*position)[0], (*position)[1], yaw);
   }
@@ -299,7 +299,7 @@ class AreaReader {
     if (!turn) return PoseOfList(list);
     const std::vector<double> p = NumbersOf(list), q = NumbersOf(turn);
     if ((p.size() == 2 || p.size() == 3) && q.size() == 4) {  // the panel writes w first
-      if (p.size() == 3) NoteHeight(line, p[2]);
+      if (p.size() == 3) TakeHeight(line, p[2]);
       const std::optional<double> yaw = YawOf({q[1], q[2], q[3], q[0]}, true, line);
       return yaw ? Pose(line, p[0], p[1], yaw) : std::nullopt;
     }
@@ -393,9 +393,13 @@ class AreaReader {
     return std::nullopt;
   }
 
-  void NoteHeight(int line, double z) {
-    if (std::abs(z) > 1e-3)
-      Note(line, "heights (z) of goals are left out: robots stand on the floor");
+  /// Tools write 0 where nobody means a height.
+  void TakeHeight(int line, double z) {
+    if (std::abs(z) <= 1e-3) return;
+    height_ = z;
+    Note(line,
+         "heights (z) of goals say no more than which one is meant of floors that lie over "
+         "one another: robots stand on the floor");
   }
 
   std::optional<geometry::Pose2> Pose(int line, double x, double y, std::optional<double> yaw) {
@@ -419,27 +423,12 @@ class AreaReader {
   std::map<std::string, Places> noted_;
   Passed passed_keys_, passed_parts_;
   std::map<std::string, int> lines_;  // of names, in lower case
+  std::optional<double> height_;      // [m] of the goal that is being read
   int num_nodes_{0}, num_unnamed_{0};
 };
 
 }  // namespace
 
 std::vector<NamedArea> ReadAreaFile(const std::string& path) { return AreaReader(path).Read(); }
-
-void AddAreas(const std::vector<NamedArea>& areas, world::World* world) {
-  for (const NamedArea& area : areas) {
-    const std::string key = base::ToLower(area.name);
-    if (std::max(std::abs(area.X_MA.x), std::abs(area.X_MA.y)) > kFarthest) {
-      throw base::ConfigError(
-          fmt::format("area '{}' lies at {:g}, {:g} m, wanted at most {:g} m away", area.name,
-                      area.X_MA.x, area.X_MA.y, kFarthest));
-    }
-    if (!world->frames.emplace(key, geometry::Lift(area.X_MA)).second) {
-      throw base::ConfigError(fmt::format(
-          "area '{}' is there already, wanted a new name; call it otherwise", area.name));
-    }
-    world->frame_names[key] = area.name;
-  }
-}
 
 }  // namespace hires::imagination

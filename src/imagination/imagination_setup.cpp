@@ -157,8 +157,9 @@ void RefuseTaken(const world::ObjectModel& model, const std::string& path,
 world::World LoadWorldWithObjects(const SetupConfig& config,
                                   const std::optional<world::OccupancyGrid>& map,
                                   std::map<std::string, std::string>* object_models) {
-  world::World world = map ? world::ExtrudeMap(*map, kWallHeight) : world::LoadWorld(config.world);
-  AddAreas(config.areas, &world);
+  world::World world = map ? world::ExtrudeMap(*map, kWallHeight)
+                           : world::LoadWorldWithAreas(config.world, config.areas);
+  if (map) world::AddAreas(config.areas, &world);
   const auto add = [&](const std::string& instance,
                        const std::shared_ptr<const world::ObjectModel>& model) {
     (*object_models)[base::ToLower(instance)] = model->name;

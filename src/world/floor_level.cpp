@@ -5,11 +5,13 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <set>
 #include <utility>
 
 #include "hires/base/log.h"
 #include "hires/geometry/angles.h"
 #include "hires/world/floor.h"
+#include "hires/world/occupancy_grid.h"
 #include "world/mesh_pieces.h"
 
 namespace hires::world {
@@ -17,7 +19,8 @@ namespace {
 
 using Mesh = std::shared_ptr<const geometry::TriangleMesh>;
 
-constexpr double kLevel = 1e-3;  // [rad] that a level face may be tilted
+constexpr double kLevel = 1e-3;       // [rad] that a level face may be tilted
+constexpr double kSameHeight = 1e-6;  // [m]
 
 bool IsInside(const Eigen::Vector2d& p, const Eigen::Vector2d& a, const Eigen::Vector2d& b,
               const Eigen::Vector2d& c) {
@@ -133,8 +136,7 @@ std::optional<FloorFace> FloorOf(const World& world) {
 
 /// World::ground_depth of a floor that consists of such faces.
 double GroundBelow(const FloorFace& face, bool has_plane) {
-  constexpr double kRounding = 1e-6;  // [m]
-  const bool lies_on_ground = face.bottom >= -kRounding && face.height > kRounding;
+  const bool lies_on_ground = face.bottom >= -kSameHeight && face.height > kSameHeight;
   if (has_plane || lies_on_ground) return face.height > kFloorStep ? face.height : 0.0;
   return std::numeric_limits<double>::infinity();
 }
@@ -144,11 +146,142 @@ std::string WithSource(const std::string& name, const World& world) {
   return fmt::format("'{}'{}", name, source.empty() ? "" : " (" + source + ")");
 }
 
+/// @param what  lies at z = 0 now: what people should know who know the file's heights.
+void TellLowered(const std::string& what, const World& world) {
+  if (std::abs(world.lowered_by) <= kSameHeight) return;
+  base::Log(base::LogLevel::kWarn,
+            fmt::format("world={} floor={:.3f} m: {} counts as z = 0, and so do all heights that "
+                        "are given",
+                        world.name, world.lowered_by, what));
+}
+
 void Lower(double by, World* world) {
   for (StaticBody& body : world->statics) body.X_MB.translation.z() -= by;
   for (auto& [name, X_MF] : world->frames) X_MF.translation.z() -= by;
   for (ObjectState& object : world->initial.objects) object.X_MO.translation.z() -= by;
   world->lowered_by += by;
+}
+
+/// Where something could stand: on the floor z = 0, and on level faces above it that go on as
+/// floors do. What lies in something has no room to stand, as a floor below a slab.
+class Levels {
+ public:
+  explicit Levels(const World& world) : world_(world) {
+    for (const StaticBody& body : world.statics) {
+      for (const geometry::Collision& shape : body.collisions)
+        shapes_.push_back({&body, &shape, geometry::BoundsOf(shape.shape, body.X_MB * shape.X_BS)});
+    }
+  }
+
+  struct Level {
+    double height;
+    double bottom;  ///< of the shape that it is the top of
+  };
+
+  /// From below; none where there is no room on any of them.
+  std::vector<Level> At(const Eigen::Vector2d& p_M) {
+    const std::vector<const Placed*> here = ShapesAt(p_M);
+    std::vector<Level> levels;
+    if (HasRoom(here, p_M, 0.0)) levels.push_back({0.0, 0.0});
+    for (const Placed* placed : here) {
+      const geometry::Pose3 X_MS = placed->body->X_MB * placed->shape->X_BS;
+      for (const double height : LevelFaces(placed->shape->shape, X_MS, {p_M.x(), p_M.y(), 0.0})) {
+        if (height <= kFloorStep || !HasRoom(here, p_M, height)) continue;
+        if (IsFloor(*placed, {p_M.x(), p_M.y(), height}))
+          levels.push_back({height, placed->bounds.lower.z()});
+      }
+    }
+    std::sort(levels.begin(), levels.end(),
+              [](const Level& a, const Level& b) { return a.height < b.height; });
+    return levels;
+  }
+
+  /// Whether the floor z = 0 is one of them; quicker.
+  bool HasGround(const Eigen::Vector2d& p_M) const { return HasRoom(ShapesAt(p_M), p_M, 0.0); }
+
+  static constexpr double kRoom = 0.3;  ///< [m] above a level; below a lower ceiling few robots fit
+
+ private:
+  struct Placed {
+    const StaticBody* body;
+    const geometry::Collision* shape;
+    geometry::Aabb bounds;
+  };
+
+  std::vector<const Placed*> ShapesAt(const Eigen::Vector2d& p_M) const {
+    std::vector<const Placed*> here;
+    for (const Placed& placed : shapes_) {
+      const Eigen::Vector2d lower = placed.bounds.lower.head<2>(),
+                            upper = placed.bounds.upper.head<2>();
+      const bool is_here =
+          (p_M.array() >= lower.array()).all() && (p_M.array() <= upper.array()).all();
+      if (is_here) here.push_back(&placed);
+    }
+    return here;
+  }
+
+  static bool HasRoom(const std::vector<const Placed*>& here, const Eigen::Vector2d& p_M,
+                      double height) {
+    const double from = height + kFloorStep, to = height + kRoom;
+    for (const Placed* placed : here) {
+      if (placed->bounds.lower.z() > to || placed->bounds.upper.z() < from) continue;
+      World alone;
+      alone.statics = {{"", placed->body->X_MB, {*placed->shape}}};
+      for (const geometry::Polygon& outline : OutlinesInBand(alone, nullptr, from, to))
+        if (geometry::Contains(outline, p_M)) return false;
+    }
+    return true;
+  }
+
+  /// Many areas lie on one floor, and to look around takes long.
+  bool IsFloor(const Placed& placed, const Eigen::Vector3d& p_M) {
+    const std::pair<const geometry::Collision*, double> key(placed.shape, p_M.z());
+    if (floors_.count(key) > 0) return true;
+    const bool is_floor = RoomUnder(world_, p_M).has_value();
+    if (is_floor) floors_.insert(key);
+    return is_floor;
+  }
+
+  const World& world_;
+  std::vector<Placed> shapes_;
+  std::set<std::pair<const geometry::Collision*, double>> floors_;
+};
+
+/// [m] The slab that lies on the floor z = 0 under a point where that has no room, or 0: a storey
+/// above a cupboard is none.
+double SlabAt(const Eigen::Vector2d& p_M, Levels* levels) {
+  constexpr double kThickest = 1.5;  // [m]
+  if (levels->HasGround(p_M)) return 0.0;
+  for (const Levels::Level& level : levels->At(p_M))
+    if (level.bottom <= Levels::kRoom && level.height <= kThickest) return level.height;
+  return 0.0;
+}
+
+/// [m] The level that lies nearest to a height; 0 where there is none.
+double NearestLevel(double wanted, const Eigen::Vector2d& p_M, Levels* levels) {
+  const std::vector<Levels::Level> possible = levels->At(p_M);
+  const auto nearest =
+      std::min_element(possible.begin(), possible.end(), [&](const auto& a, const auto& b) {
+        return std::abs(a.height - wanted) < std::abs(b.height - wanted);
+      });
+  return nearest == possible.end() ? 0.0 : nearest->height;
+}
+
+/// [m] of each area: of the level nearest to the height that it has, else of the floor on which the
+/// world's own areas make robots stand, else of the slab under it.
+std::vector<double> HeightsOf(const std::vector<NamedArea>& areas, const World& world) {
+  const std::optional<FloorFace> own = FloorOf(world);
+  Levels levels(world);
+  std::vector<double> heights;
+  for (const NamedArea& area : areas) {
+    const Eigen::Vector2d p_M = area.X_MA.position();
+    if (area.z) {
+      heights.push_back(NearestLevel(*area.z - world.lowered_by, p_M, &levels));
+    } else {
+      heights.push_back(own ? own->height : SlabAt(p_M, &levels));
+    }
+  }
+  return heights;
 }
 
 }  // namespace
@@ -181,11 +314,7 @@ World OnItsFloor(World world, bool has_plane) {
   world.ground_depth = GroundBelow(*face, has_plane);
   if (std::abs(face->height) > kFloorStep) {
     Lower(face->height, &world);
-    base::Log(
-        base::LogLevel::kWarn,
-        fmt::format("world={} floor={:.3f} m: areas stand on a face of that height; it counts "
-                    "as z = 0, and so do all heights that are given",
-                    world.name, face->height));
+    TellLowered("areas stand on a face of that height; it", world);
   }
   if (world.ground_depth > 0.0) {
     world.notes.push_back(
@@ -199,19 +328,17 @@ World OnItsFloor(World world, bool has_plane) {
   return world;
 }
 
-World OnItsFloor(World world, const std::optional<FloorPlane>& plane) {
-  constexpr double kRounding = 1e-6;  // [m]
-  if (plane && std::abs(plane->height) > kRounding) {
-    Lower(plane->height, &world);
-    base::Log(
-        base::LogLevel::kWarn,
-        fmt::format("world={} floor={:.3f} m: {} is the floor; its height counts as z = 0, and "
-                    "so do all heights that are given",
-                    world.name, plane->height, plane->where));
-  }
+World OnItsFloor(World world, const std::optional<FloorPlane>& plane,
+                 const std::vector<NamedArea>& areas) {
+  if (plane && std::abs(plane->height) > kSameHeight) Lower(plane->height, &world);
   if (plane) world.floor_friction = plane->friction;
+  AddAreas(areas, HeightsOf(areas, world), &world);
   world.hash = world.ComputeHash();
-  return OnItsFloor(std::move(world), plane.has_value());
+  const double lowered_by = world.lowered_by;
+  world = OnItsFloor(std::move(world), plane.has_value());
+  if (world.lowered_by == lowered_by && plane)
+    TellLowered(plane->where + " is the floor; its height", world);
+  return world;
 }
 
 std::string WhyElsewhere(const World& world, const std::string& area, double step) {

@@ -2,7 +2,9 @@
 
 #include <optional>
 #include <string>
+#include <vector>
 
+#include "hires/world/named_area.h"
 #include "hires/world/world.h"
 
 namespace hires::world {
@@ -40,7 +42,13 @@ World OnItsFloor(World world, bool has_plane = false);
 
 /// The same where the file's highest plane is `plane`, at whatever height: what stands on it stands
 /// at z = 0 first.
-World OnItsFloor(World world, const std::optional<FloorPlane>& plane);
+/// @param areas  that are added to those of the world. They stand on the floor that its own say;
+/// where these say none, on z = 0, or, where a slab lies there, on its top, if that is a level face
+/// that goes on as above with 0.3 m of room above it. With a height of its own an area stands on
+/// the nearest of such faces, or z = 0.
+/// @throws base::ConfigError as AddAreas.
+World OnItsFloor(World world, const std::optional<FloorPlane>& plane,
+                 const std::vector<NamedArea>& areas = {});
 
 /// The mesh without what lies no higher than `top` [m] of the frame W: parts that lie below it as
 /// a whole, and faces of open sheets. Null: nothing is left; the mesh itself where nothing is so

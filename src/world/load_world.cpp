@@ -99,7 +99,7 @@ class WorldBuilder {
 
   /// Models keep the order of the file till here, as names of kinds depend on it. What comes out is
   /// in the order of names, so that the layout of the file changes no result.
-  World Finish(const std::string& path) {
+  World Finish(const std::string& path, const std::vector<NamedArea>& more_areas) {
     NoteUselessJoints();
     for (auto& [place, model] : models_) {
       Try([&] { Place(std::move(model)); });
@@ -117,7 +117,7 @@ class WorldBuilder {
     std::sort(world_.initial.objects.begin(), world_.initial.objects.end(), by_name);
     for (const std::string& doubt : meshes_.Doubts()) world_.notes.push_back(doubt);
     world_.hash = world_.ComputeHash();
-    return OnItsFloor(std::move(world_), floor_);
+    return OnItsFloor(std::move(world_), floor_, more_areas);
   }
 
  private:
@@ -345,15 +345,19 @@ World LoadWorld(const std::string& sdf_path, const std::vector<std::string>& mod
   return LoadWorldInParts(sdf_path, model_path, kModelsPerPart);
 }
 
+World LoadWorldWithAreas(const std::string& sdf_path, const std::vector<NamedArea>& areas) {
+  return LoadWorldInParts(sdf_path, {}, kModelsPerPart, areas);
+}
+
 World LoadWorldInParts(const std::string& sdf_path, const std::vector<std::string>& model_path,
-                       std::size_t models_per_part) {
+                       std::size_t models_per_part, const std::vector<NamedArea>& areas) {
   const ResourceFinder finder(ModelFoldersFor(sdf_path, model_path));
   LoadNotes notes;
   const SdfFiles files = ReadWorldFiles(sdf_path, finder, &notes);
   WorldBuilder builder(&finder, files.at(sdf_path).world_joints, &notes);
   ReadSdfWorld(files, sdf_path, models_per_part, &notes,
                [&](const SdfWorldPart& part) { builder.Add(part, sdf_path); });
-  return builder.Finish(sdf_path);
+  return builder.Finish(sdf_path, areas);
 }
 
 ObjectModel LoadObjectModel(const std::string& path) {

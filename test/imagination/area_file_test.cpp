@@ -105,6 +105,20 @@ TEST_F(AreaFileTest, WhatIsAssumedOrLeftOutIsSaidOnceForEachKind) {
                                      AllOf(HasSubstr("goals.yaml:3:"), HasSubstr("heights"))));
 }
 
+TEST_F(AreaFileTest, HeightsAreKeptInAllForms) {
+  const auto areas = Read(
+      "a: [1, 2, 3.5, 0, 0, 0, 1]\nb: {x: 1, y: 2, z: 3.5, yaw: 0}\nc: [1, 2, 0]\n"
+      "d: {position: {x: 1, y: 2, z: 3.5}, orientation: {w: 1.0}}\n"
+      "e: {pose: [1, 2, 3.5], orientation: [1, 0, 0, 0]}\n"
+      "f: {position: {x: 1, y: 2, z: 0.0}, orientation: {w: 1.0}}\n");
+  ASSERT_EQ(areas.size(), 6u);
+  for (const NamedArea& area : areas) {
+    ExpectArea(area, area.name, 1, 2, 0);
+    EXPECT_EQ(area.z.has_value(), area.name != "c" && area.name != "f") << area.name;
+    EXPECT_EQ(area.z.value_or(3.5), 3.5) << area.name;
+  }
+}
+
 TEST_F(AreaFileTest, AllThatIsWrongIsToldWithItsLine) {
   EXPECT_THAT(ErrorOf("a: [1, 2, 90]\nb: [1, 2, 3, 4]\nA: [0, 0, 0]\nc: {x: one, y: 2}\n"),
               AllOf(HasSubstr("4 things are wrong"), HasSubstr("goals.yaml:1: yaw is in radians"),

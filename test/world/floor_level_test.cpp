@@ -187,6 +187,62 @@ TEST(FloorLevelTest, AreasOfAnotherStoreyAndBuriedOnesAreTold) {
   }
 }
 
+/// A slab, a roof whose top lies `storey` above it, and a table between them.
+World Storeys(double top, double bottom, double storey) {
+  World world;
+  world.statics = {
+      Block("slab", {14.0, 14.0, top - bottom}, {2.0, 0.0, 0.5 * (top + bottom)}),
+      Block("roof", {14.0, 14.0, 0.1}, {2.0, 0.0, top + storey - 0.05}),
+      Block("table", {1.0, 1.0, 0.05}, {2.0, 3.0, top + 0.7}),
+  };
+  return world;
+}
+
+TEST(FloorLevelTest, AddedAreasStandOnWhatIsUnderThem) {
+  base::Rng rng(7);
+  for (int i = 0; i < Rounds(60); ++i) {
+    const double bottom = rng.Uniform(-1.0, 1.0), top = bottom + rng.Uniform(0.006, 0.5);
+    const double storey = rng.Uniform(1.0, 3.0);
+    World world = Storeys(top, bottom, storey);
+    if (i % 3 == 0) {
+      auto& shape = world.statics[0].collisions.front().shape;
+      shape = hires::test_support::BoxMesh(Eigen::Vector3d(std::get<geometry::Box>(shape).size));
+    }
+    const FloorPlane plane{rng.Uniform(bottom, top - 0.0055), 0.7, "w.world:1"};
+    std::vector<NamedArea> areas{{"a", {0.0, 0.0, 0.3}}, {"b", {4.0, -2.0, 0.0}}};
+    const World after = OnItsFloor(world, plane, areas);
+    EXPECT_NEAR(after.lowered_by, top, 1e-9) << plane.height;
+    EXPECT_NEAR(after.frames.at("a").translation.z(), 0.0, 1e-9);
+    EXPECT_NEAR(after.ground_depth, top - plane.height, 1e-9);
+    // Heights say which storey, however roughly.
+    const double off = rng.Uniform(-0.3, 0.3);
+    for (NamedArea& area : areas) area.z = top + storey + off;
+    EXPECT_NEAR(OnItsFloor(world, plane, areas).lowered_by, top + storey, 1e-9);
+    for (NamedArea& area : areas) area.z = top + off;
+    EXPECT_NEAR(OnItsFloor(world, plane, areas).lowered_by, top, 1e-9);
+  }
+}
+
+TEST(FloorLevelTest, AddedAreasStandOnTheGroundWhereThereIsRoom) {
+  base::Rng rng(8);
+  for (int i = 0; i < Rounds(60); ++i) {
+    const double height = rng.Uniform(0.35, 3.0), table = rng.Uniform(0.1, 0.9);
+    World world = Ending(-6.0, 6.0, 12.0, height + 0.05, 0.05);  // a storey on pillars
+    world.statics.push_back(Block("table", {0.8, 1.2, 0.1}, {0.0, 0.0, table}));
+    world.frames.clear();
+    const FloorPlane plane{0.0, 0.7, ""};
+    const World after = OnItsFloor(world, plane, {{"a", {3.0, 0.0, 0.0}}, {"t", {0.0, 0.0, 0.0}}});
+    EXPECT_EQ(after.lowered_by, 0.0);
+    for (const char* name : {"a", "t"}) EXPECT_EQ(after.frames.at(name).translation.z(), 0.0);
+    EXPECT_EQ(after.frame_names.at("a"), "a");
+    // Where the world's own areas stand, added ones do.
+    world.frames["own"] = {{3.0, 1.0, height + 0.05}, Eigen::Quaterniond::Identity()};
+    const World up = OnItsFloor(world, plane, {{"a", {3.0, 0.0, 0.0}}});
+    EXPECT_NEAR(up.lowered_by, height + 0.05, 1e-9);
+    EXPECT_NEAR(up.frames.at("a").translation.z(), 0.0, 1e-9);
+  }
+}
+
 TEST(FloorLevelTest, AMeshWithoutItsFloorKeepsItsWalls) {
   base::Rng rng(2);
   for (int i = 0; i < Rounds(100); ++i) {

@@ -15,14 +15,11 @@
 #include "hires/simulation/scene.h"
 #include "hires/skills/skill_factory.h"
 #include "hires/translation/translator.h"
+#include "hires/world/named_area.h"
 
 namespace hires::imagination {
 
-/// A place to stand at that is named beside the world's file.
-struct NamedArea {
-  std::string name;
-  geometry::Pose2 X_MA;
-};
+using world::NamedArea;
 
 /// Which files and numbers a world to imagine in is made of: one YAML, config/scene.yaml. Relative
 /// paths count from that file's folder.

@@ -129,8 +129,9 @@ void AddMapColumns(const world::OccupancyGrid& map, Rows* rows) {
 Rows Areas(const Sources& sources) {
   std::optional<world::OccupancyGrid> map;
   if (!sources.setup.map.empty()) map = world::LoadMap(sources.setup.map);
-  world::World world = map ? world::World() : world::LoadWorld(sources.setup.world);
-  imagination::AddAreas(sources.setup.areas, &world);
+  world::World world =
+      map ? world::World() : world::LoadWorldWithAreas(sources.setup.world, sources.setup.areas);
+  if (map) world::AddAreas(sources.setup.areas, &world);
   const robot::Robot robot = robot::LoadAnyRobot(sources.setup.robot);
   Spelling spelling{world.frame_names.begin(), world.frame_names.end()};
   spelling.emplace(translation::kTrayArea, "trayArea1");  // as the ontology's knowledge spells it
