@@ -12,6 +12,7 @@
 #include "hires/geometry/angles.h"
 #include "hires/world/floor.h"
 #include "hires/world/occupancy_grid.h"
+#include "world/map_region.h"
 #include "world/mesh_pieces.h"
 
 namespace hires::world {
@@ -338,6 +339,7 @@ World OnItsFloor(World world, const std::optional<FloorPlane>& plane,
   world = OnItsFloor(std::move(world), plane.has_value());
   if (world.lowered_by == lowered_by && plane)
     TellLowered(plane->where + " is the floor; its height", world);
+  NoteMapRegion(&world);
   return world;
 }
 

@@ -39,7 +39,7 @@ bool ComesBefore(const std::string& a, const std::string& b) {
 struct WorldModel {
   std::string name;
   std::string where;  ///< for messages
-  std::string place;  ///< of a loose one: "hall.world:12"
+  std::string place;  ///< "hall.world:12"
   geometry::Pose3 X_MB;
   StaticShapes shapes;                ///< of what is still
   std::optional<ObjectModel> object;  ///< what can move, under the name that its kind should have
@@ -104,6 +104,7 @@ class WorldBuilder {
     for (auto& [place, model] : models_) {
       Try([&] { Place(std::move(model)); });
     }
+    if (!has_near_ && !far_.empty()) notes_->AddProblem(far_);
     for (const Area& area : areas_) {
       Try([&] { Place(area); });
     }
@@ -170,13 +171,13 @@ class WorldBuilder {
     WorldModel result;
     result.name = model.Name();
     result.where = Where(model);
-    result.X_MB = PoseIn(model.SemanticPose(), "", result.where);
+    result.place = PlaceOf(model.Element());
+    result.X_MB = PoseIn(model.SemanticPose(), "", result.where, kMaxWritten);
     PlayedModel played = PlayedModelOf(model, result.X_MB, HoldOf(model), reading_);
     result.shapes = std::move(played.shapes);
     result.object = std::move(played.object);
     if (result.object) {
       result.object->name = NameOfKind(model);
-      result.place = PlaceOf(model.Element());
     }
     return result;
   }
@@ -233,8 +234,43 @@ class WorldBuilder {
                     claimed->second));
   }
 
+  /// What lies so far away is no part of what is imagined, as mountains behind a town. Where
+  /// nothing is left, it is the origin that lies far away.
+  void LeaveOutFar(WorldModel* model) {
+    const auto is_far = [&](const geometry::Collision& shape) {
+      const geometry::Aabb bounds = geometry::BoundsOf(shape.shape, model->X_MB * shape.X_BS);
+      const Eigen::Vector3d nearest =
+          Eigen::Vector3d::Zero().cwiseMax(bounds.lower).cwiseMin(bounds.upper);
+      return nearest.norm() > kMaxDistance;
+    };
+    std::vector<geometry::Collision>& shapes =
+        model->object ? model->object->collisions : model->shapes.collisions;
+    const auto left = std::remove_if(shapes.begin(), shapes.end(), is_far);
+    const bool is_some = left != shapes.end(), is_all = left == shapes.begin();
+    if (!is_some || (model->object && !is_all)) {  // a thing is played whole
+      has_near_ = has_near_ || !shapes.empty();
+      return;
+    }
+    notes_->Add("model",
+                fmt::format("farther than {} m from the origin, or with parts that are: what is "
+                            "so far away is left out",
+                            kMaxDistance),
+                fmt::format("{} '{}'", model->place, model->name));
+    const Eigen::Vector3d p = model->X_MB * shapes.front().X_BS.translation;
+    if (far_.empty()) {
+      far_ = fmt::format(
+          "{}: lies at ({:g}, {:g}, {:g}) m, farther than {:g} m from the origin, as all that "
+          "stands does; move the origin closer",
+          model->where, p.x(), p.y(), p.z(), kMaxDistance);
+    }
+    has_near_ = has_near_ || !is_all;
+    shapes.erase(left, shapes.end());
+  }
+
   void Place(WorldModel model) {
     ClaimName(model.name, model.where);
+    LeaveOutFar(&model);
+    if (model.object && model.object->collisions.empty()) return;
     if (model.object) {
       world_.initial.objects.push_back(
           {model.name, Share(*std::move(model.object)), model.X_MB, {}, ""});
@@ -312,6 +348,8 @@ class WorldBuilder {
   std::map<std::size_t, WorldModel> models_;      // by place in the file
   std::size_t num_shapes_{0}, num_triangles_{0};  // of what stands
   std::vector<Area> areas_;
+  std::string far_;       // what is wrong if nothing is near
+  bool has_near_{false};  // anything that stands or is loose
   std::optional<FloorPlane> floor_;
   std::map<std::string, std::string> names_;    // lower case -> where
   std::map<std::uint64_t, std::string> kinds_;  // hash of an object model -> its key

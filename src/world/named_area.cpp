@@ -8,6 +8,7 @@
 #include "hires/base/check.h"
 #include "hires/base/error.h"
 #include "hires/base/text.h"
+#include "world/map_region.h"
 
 namespace hires::world {
 namespace {
@@ -18,6 +19,7 @@ constexpr double kFarthestArea = 1000.0;  // [m], as what a world's file has
 
 void AddAreas(const std::vector<NamedArea>& areas, World* world) {
   AddAreas(areas, std::vector<double>(areas.size(), 0.0), world);
+  NoteMapRegion(world);
 }
 
 void AddAreas(const std::vector<NamedArea>& areas, const std::vector<double>& heights,

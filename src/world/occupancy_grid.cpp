@@ -10,6 +10,7 @@
 #include "hires/base/error.h"
 #include "hires/base/text.h"
 #include "world/floor_level.h"
+#include "world/map_region.h"
 #include "world/mesh_pieces.h"
 
 namespace hires::world {
@@ -94,10 +95,16 @@ std::string LargestText(const World& world) {
   return text;
 }
 
-/// A free grid around x, y of the world's bodies, its cell edges on whole multiples of the
-/// resolution.
+/// A free grid around x, y of the world's bodies, or of what MapRegion says, its cell edges on
+/// whole multiples of the resolution.
 OccupancyGrid GridAround(const World& world, double resolution, double margin) {
-  const geometry::Aabb bounds = BoundsOf(world);
+  constexpr double kRegionMargin = 2.0;  // [m] at most: areas lie in a region already
+  geometry::Aabb bounds = BoundsOf(world);
+  if (const auto region = MapRegion(world)) {
+    bounds.lower.head<2>() = region->min();
+    bounds.upper.head<2>() = region->max();
+    margin = std::min(margin, kRegionMargin);
+  }
   const Eigen::Array2d lower =
       ((bounds.lower.head<2>().array() - margin) / resolution + kTouch).floor();
   const Eigen::Array2d upper =
@@ -105,9 +112,11 @@ OccupancyGrid GridAround(const World& world, double resolution, double margin) {
   const Eigen::Array2d size = (upper - lower).max(1.0);
   if (!(size.prod() <= kMaxCells)) {
     throw base::ConfigError(fmt::format(
-        "a grid of {:g} x {:g} cells of {} m is too large, at most {:g} cells; take a coarser "
-        "resolution{}",
-        size.x(), size.y(), resolution, kMaxCells, LargestText(world)));
+        "a grid of {:g} x {:g} cells of {} m is too large, at most {:g} cells; {}take a coarser "
+        "resolution where there is a choice{}",
+        size.x(), size.y(), resolution, kMaxCells,
+        world.frames.empty() ? "" : "leave out areas that lie far from the others, or ",
+        LargestText(world)));
   }
   OccupancyGrid grid;
   grid.resolution = resolution;
@@ -126,6 +135,7 @@ void Occupy(const geometry::Polygon& outline, OccupancyGrid* grid) {
   const auto [low, high] = std::minmax_element(
       outline.begin(), outline.end(), [](const auto& a, const auto& b) { return a.y() < b.y(); });
   const double res = grid->resolution;
+  if (high->y() < grid->origin.y() || low->y() > grid->origin.y() + res * grid->height) return;
   const int first = ClampedIndex((low->y() - grid->origin.y()) / res - kTouch, grid->height);
   const int last = ClampedIndex((high->y() - grid->origin.y()) / res + kTouch, grid->height);
   for (int row = first; row <= last; ++row) {
@@ -133,7 +143,7 @@ void Occupy(const geometry::Polygon& outline, OccupancyGrid* grid) {
     const Span span = SpanInStrip(outline, y + kTouch, y + res - kTouch);
     const double from = (span.from + kTouch - grid->origin.x()) / res;
     const double to = (span.to - kTouch - grid->origin.x()) / res;
-    if (!(span.to - span.from > 2.0 * kTouch)) continue;
+    if (!(span.to - span.from > 2.0 * kTouch) || to < 0.0 || from >= grid->width) continue;
     for (int column = ClampedIndex(from, grid->width); column <= ClampedIndex(to, grid->width);
          ++column) {
       grid->cells[static_cast<std::size_t>(row) * grid->width + column] = Cell::kOccupied;

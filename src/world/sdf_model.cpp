@@ -105,7 +105,7 @@ bool IsEmpty(const sdf::Collision& collision) {
 void AppendCollision(const sdf::Collision& collision, const geometry::Pose3& X_BL,
                      const std::string& prefix, const ModelReading& reading, StaticShapes* shapes) {
   const std::string where = WhereIs(collision);
-  const geometry::Pose3 X_BC = X_BL * PoseIn(collision.SemanticPose(), "", where);
+  const geometry::Pose3 X_BC = X_BL * PoseIn(collision.SemanticPose(), "", where, kMaxWritten);
   for (const ShapePart& part : ShapesOf(collision, reading)) {
     geometry::Collision result;
     result.name = prefix + collision.Name() + part.suffix;
@@ -115,7 +115,7 @@ void AppendCollision(const sdf::Collision& collision, const geometry::Pose3& X_B
         NumberAt(collision.Element(), {"surface", "friction", "ode", "mu"}, result.friction);
     result.restitution =
         NumberAt(collision.Element(), {"surface", "bounce", "restitution_coefficient"}, 0.0);
-    CheckCollision(result, where);
+    CheckCollision(result, where, kMaxWritten);
     shapes->places[result.name] = PlaceOf(collision.Element());
     shapes->collisions.push_back(std::move(result));
   }
@@ -124,7 +124,7 @@ void AppendCollision(const sdf::Collision& collision, const geometry::Pose3& X_B
 void AppendPlane(const sdf::Collision& collision, const geometry::Pose3& X_WL,
                  StaticShapes* shapes) {
   const std::string where = WhereIs(collision);
-  const geometry::Pose3 X_WS = X_WL * PoseIn(collision.SemanticPose(), "", where);
+  const geometry::Pose3 X_WS = X_WL * PoseIn(collision.SemanticPose(), "", where, kMaxWritten);
   const Eigen::Vector3d normal = X_WS.rotation * ToEigen(collision.Geom()->PlaneShape()->Normal());
   if ((normal - Eigen::Vector3d::UnitZ()).norm() > kFloorTolerance) {
     throw base::ConfigError(
@@ -296,20 +296,21 @@ std::string MeshCache::DoubtAbout(const geometry::Shape& shape) const {
   return found == doubts_.end() ? "" : "; " + found->second;
 }
 
-void CheckPose(const geometry::Pose3& pose, const std::string& where) {
+void CheckPose(const geometry::Pose3& pose, const std::string& where, double farthest) {
   if (!pose.IsFinite()) {
     throw base::ConfigError(where + ": its pose is not finite; write six finite numbers");
   }
   const Eigen::Vector3d& p = pose.translation;
-  if (p.norm() > kMaxDistance) {
+  if (p.norm() > farthest) {
     throw base::ConfigError(fmt::format(
         "{}: lies at ({:g}, {:g}, {:g}) m, farther than {:g} m from the origin; move the origin "
         "closer",
-        where, p.x(), p.y(), p.z(), kMaxDistance));
+        where, p.x(), p.y(), p.z(), farthest));
   }
 }
 
-void CheckCollision(const geometry::Collision& collision, const std::string& where) {
+void CheckCollision(const geometry::Collision& collision, const std::string& where,
+                    double farthest) {
   std::vector<double> sizes;
   if (const auto* box = std::get_if<geometry::Box>(&collision.shape)) {
     sizes = {box->size.x(), box->size.y(), box->size.z()};
@@ -319,11 +320,11 @@ void CheckCollision(const geometry::Collision& collision, const std::string& whe
     sizes = {sphere->radius};
   }
   for (const double size : sizes) {
-    if (size > 0.0 && size <= 2.0 * kMaxDistance) continue;
+    if (size > 0.0 && size <= kMaxSize) continue;
     throw base::ConfigError(fmt::format("{}: has a size of {} m, wanted above 0 and at most {} m",
-                                        where, size, 2.0 * kMaxDistance));
+                                        where, size, kMaxSize));
   }
-  CheckPose(collision.X_BS, where);
+  CheckPose(collision.X_BS, where, farthest);
   if (!(collision.friction >= 0.0) || !std::isfinite(collision.friction)) {
     throw base::ConfigError(fmt::format("{}: friction <mu> is {}, wanted a finite number from 0 up",
                                         where, collision.friction));
@@ -335,11 +336,11 @@ void CheckCollision(const geometry::Collision& collision, const std::string& whe
 }
 
 geometry::Pose3 PoseIn(const sdf::SemanticPose& pose, const std::string& in,
-                       const std::string& where) {
+                       const std::string& where, double farthest) {
   ignition::math::Pose3d resolved;
   ThrowIfAny(pose.Resolve(resolved, in), where);
   const geometry::Pose3 result = ToPose(resolved);
-  CheckPose(result, where);
+  CheckPose(result, where, farthest);
   return result;
 }
 

@@ -16,8 +16,10 @@
 
 namespace hires::world {
 
-/// Farthest that anything may lie from the origin of its frame [m].
+/// Farthest that anything that is played may lie from the origin of its frame [m].
 constexpr double kMaxDistance = 1000.0;
+constexpr double kMaxSize = 1e5;     ///< [m] of a shape: ground without end is written so
+constexpr double kMaxWritten = 1e6;  ///< [m] from the origin; farther away it is another's
 
 /// Each mesh file, or part of it, is read once per scale and shared by all that name it.
 class MeshCache {
@@ -39,13 +41,15 @@ class MeshCache {
 };
 
 /// @throws base::ConfigError if `shape` has a size that is not finite and above 0, or `pose` is not
-/// finite or lies beyond kMaxDistance, or the coefficients lie outside their ranges.
-void CheckCollision(const geometry::Collision& collision, const std::string& where);
-void CheckPose(const geometry::Pose3& pose, const std::string& where);
+/// finite or lies beyond `farthest` [m], or the coefficients lie outside their ranges.
+void CheckCollision(const geometry::Collision& collision, const std::string& where,
+                    double farthest = kMaxDistance);
+void CheckPose(const geometry::Pose3& pose, const std::string& where,
+               double farthest = kMaxDistance);
 
 /// The pose in the frame named `in` (of the pose's own scope), relative_to followed.
 geometry::Pose3 PoseIn(const sdf::SemanticPose& pose, const std::string& in,
-                       const std::string& where);
+                       const std::string& where, double farthest = kMaxDistance);
 
 /// "file:line: model 'x'" for messages.
 std::string Where(const sdf::Model& model);

@@ -329,7 +329,7 @@ TEST_F(LoadWorldTest, ReportsEveryObjectionWithFileAndLine) {
   const std::string error = ErrorOf(
       StaticModel("a", LinkWithShape("<heightmap/>")) +
       StaticModel("b", "<pose>here</pose>" + LinkWithShape(kUnitBox)) +
-      "<frame name='f'><pose relative_to='nowhere'/></frame>" + LooseCube("far", "0 2000 0 0 0 0"));
+      "<frame name='f'><pose relative_to='nowhere'/></frame>" + LooseCube("far", "0 2e6 0 0 0 0"));
   EXPECT_THAT(error, AllOf(HasSubstr("test.world:3: collision 'c'"), HasSubstr("here"),
                            HasSubstr("nowhere"), HasSubstr("test.world:5: model 'far'")));
 }
@@ -384,7 +384,7 @@ TEST_F(LoadWorldTest, RefusesShapesItCannotHold) {
               AllOf(HasSubstr("<heightmap>"), HasSubstr("mesh")));
   EXPECT_THAT(error_of("<box><size>1 0 1</size></box>"), HasSubstr("test.world"));
   EXPECT_THAT(error_of("<sphere><radius>-1</radius></sphere>"), HasSubstr("test.world"));
-  EXPECT_THAT(error_of("<sphere><radius>5000</radius></sphere>"), HasSubstr("5000"));
+  EXPECT_THAT(error_of("<sphere><radius>5e5</radius></sphere>"), HasSubstr("500000"));
 }
 
 TEST_F(LoadWorldTest, RefusesSurfacesOutOfRange) {

@@ -4,6 +4,8 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <string>
+#include <vector>
 
 #include "hires/base/error.h"
 #include "hires/base/rng.h"
@@ -131,6 +133,76 @@ TEST(SliceWorldTest, RefusesGridsThatWouldNotFit) {
   }
   EXPECT_THROW(SliceWorld(world, 0.0, 1.0, 0.0), std::logic_error);
   EXPECT_THROW(SliceWorld(world, 1.0, 0.0), std::logic_error);
+}
+
+World WithAreas(World world, const std::vector<Eigen::Vector2d>& areas) {
+  for (const Eigen::Vector2d& p : areas) {
+    const std::string name = "area" + std::to_string(world.frames.size());
+    world.frames[name].translation = {p.x(), p.y(), 0.0};
+  }
+  return world;
+}
+
+TEST(MapRegionTest, GridsOfWorldsThatAreNotWideCoverAllWhateverAreasThereAre) {
+  base::Rng rng(31);
+  for (int i = 0; i < 100; ++i) {
+    std::vector<geometry::Collision> shapes;
+    for (int j = 1 + rng.Index(5); j > 0; --j) {
+      shapes.push_back(Shape(geometry::Box{{rng.Uniform(0.1, 5), rng.Uniform(0.1, 5), 1}},
+                             {rng.Uniform(-40, 40), rng.Uniform(-40, 40), rng.Uniform(-2, 9)}));
+    }
+    const World world = WorldOf(shapes);
+    const OccupancyGrid all = SliceWorld(world, 0.1, 1.0, 0.5);
+    const OccupancyGrid with = SliceWorld(WithAreas(world, {{1, 2}, {3, 4}}), 0.1, 1.0, 0.5);
+    EXPECT_EQ(all.cells, with.cells);
+    EXPECT_EQ(all.origin, with.origin);
+    EXPECT_EQ(all.width, with.width);
+  }
+}
+
+TEST(MapRegionTest, GridsOfWideWorldsHaveAllThatIsNearTheAreas) {
+  base::Rng rng(32);
+  for (int i = 0; i < 40; ++i) {
+    const Eigen::Vector2d middle(rng.Uniform(-100, 100), rng.Uniform(-100, 100));
+    std::vector<geometry::Collision> shapes{
+        Shape(geometry::Box{{1, 1, 2}}, {-rng.Uniform(150, 900), -300, 1}),
+        Shape(geometry::Box{{1, 1, 2}}, {rng.Uniform(150, 900), 300, 1}),
+        Shape(geometry::Box{{9000, 9000, 1}}, {0, 0, -0.5}),
+        Shape(geometry::Box{{9000, 1, 1}}, {0, 0, 20})};
+    for (int j = 0; j < 30; ++j) {
+      shapes.push_back(
+          Shape(geometry::Cylinder{rng.Uniform(0.1, 3), 2},
+                {middle.x() + rng.Uniform(-70, 70), middle.y() + rng.Uniform(-70, 70), 1}));
+    }
+    const World world = WithAreas(
+        WorldOf(shapes), {middle, middle + Eigen::Vector2d(rng.Uniform(-9, 9), rng.Uniform(0, 9))});
+    const OccupancyGrid grid = SliceWorld(world, 0.1, 1.0, 0.25, 2.0);
+    EXPECT_LE(0.0625 * grid.width * grid.height, 1.1e4);
+    const Eigen::Vector2d size = grid.resolution * Eigen::Vector2d(grid.width, grid.height);
+    for (int j = 0; j < 500; ++j) {
+      const Eigen::Vector2d p =
+          grid.origin + size.cwiseProduct(Eigen::Vector2d(rng.Uniform(0, 1), rng.Uniform(0, 1)));
+      bool is_in = false, is_close = false;
+      for (std::size_t k = 4; k < shapes.size(); ++k) {
+        const double radius = std::get<geometry::Cylinder>(shapes[k].shape).radius;
+        const double off = (p - shapes[k].X_BS.translation.head<2>()).norm() - radius;
+        is_in = is_in || off < 0.0;
+        is_close = is_close || off < 0.4;
+      }
+      if (is_in) {
+        EXPECT_EQ(CellAt(grid, p), Cell::kOccupied) << p.transpose();
+      } else if (!is_close) {
+        EXPECT_EQ(CellAt(grid, p), Cell::kFree) << p.transpose();
+      }
+    }
+    for (const auto& [name, X_MF] : world.frames) {
+      for (const double x : {-20.0, 20.0}) {
+        const Eigen::Vector2d p = X_MF.translation.head<2>() + Eigen::Vector2d(x, 0.0);
+        EXPECT_TRUE(((p - grid.origin).array() >= 0.0).all());
+        EXPECT_TRUE(((grid.origin + size - p).array() >= 0.0).all());
+      }
+    }
+  }
 }
 
 TEST(OutlinesInBandTest, ObjectsCountOnlyWhereAsked) {

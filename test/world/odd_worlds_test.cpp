@@ -113,9 +113,15 @@ std::vector<Oddity> Oddities() {
       {"tilted plane", true,
        [](Name n) { return StaticShape(n, "<plane><normal>0 1 1</normal></plane>"); },
        "level ones that face up"},
-      {"far away", true,
+      {"far away", false,
        [](Name n) {
-         return StaticModel(n, "<pose>5000 0 0 0 0 0</pose>" + LinkWithShape(kUnitBox));
+         return StaticModel("near_" + n, LinkWithShape(kUnitBox)) +
+                StaticModel(n, "<pose>5000 0 0 0 0 0</pose>" + LinkWithShape(kUnitBox));
+       },
+       "'%s'"},
+      {"farther than anything is written", true,
+       [](Name n) {
+         return StaticModel(n, "<pose>5e6 0 0 0 0 0</pose>" + LinkWithShape(kUnitBox));
        },
        "'%s'"},
       {"area on what moves", true,

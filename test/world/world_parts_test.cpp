@@ -153,8 +153,8 @@ TEST_F(WorldPartsFileTest, MessagesNameTheLineOfTheFile) {
               StaticModel("two", LinkWithShape("<box>\n<size>1\n1 1</size></box>")) + last);
     return MessageOf<base::ConfigError>([&] { LoadWorldInParts(path, {}, 1); });
   };
-  EXPECT_THAT(error_of(LooseCube("far", "0 2000 0 0 0 0")), HasSubstr("test.world:9: model 'far'"));
-  EXPECT_THAT(error_of(StaticModel("Two", LinkWithShape(kUnitBox))),
+  EXPECT_THAT(error_of(LooseCube("far", "0 2e6 0 0 0 0")), HasSubstr("test.world:9: model 'far'"));
+  EXPECT_THAT(error_of(LooseCube("Two")),
               AllOf(HasSubstr("test.world:9: model 'Two'"), HasSubstr("test.world:6: model 'two'"),
                     HasSubstr("rename")));
   EXPECT_THAT(error_of(StaticModel("three", "<pose>here</pose>" + LinkWithShape(kUnitBox))),

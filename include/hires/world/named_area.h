@@ -21,7 +21,8 @@ struct NamedArea {
 /// @throws base::ConfigError as LoadWorld and AddAreas.
 World LoadWorldWithAreas(const std::string& sdf_path, const std::vector<NamedArea>& areas);
 
-/// Adds areas on the floor z = 0, or at `heights` [m] (one for each).
+/// Adds areas on the floor z = 0, and notes if the world is wider than its map is then; or at
+/// `heights` [m] (one for each).
 /// @throws base::ConfigError: too far away, or called as another area of the world.
 void AddAreas(const std::vector<NamedArea>& areas, World* world);
 void AddAreas(const std::vector<NamedArea>& areas, const std::vector<double>& heights,

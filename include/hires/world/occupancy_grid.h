@@ -43,7 +43,8 @@ struct NamedOutline {
 std::vector<NamedOutline> NamedOutlinesInBand(const World& world, double z_min, double z_max);
 
 /// Occupied are the cells that a static body touches within z_min..z_max (equal: a slice, as the
-/// laser sees it); all others are free. Covers all static bodies plus `margin` [m].
+/// laser sees it); all others are free. Covers all static bodies plus `margin` [m]; in wide worlds
+/// what lies around its areas (MapRegion).
 OccupancyGrid SliceWorld(const World& world, double z_min, double z_max, double resolution = 0.05,
                          double margin = 0.5);
 

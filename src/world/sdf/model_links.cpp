@@ -29,15 +29,15 @@ class Collector {
     for (std::uint64_t i = 0; i < model.LinkCount(); ++i) {
       const sdf::Link& link = *model.LinkByIndex(i);
       const int number = static_cast<int>(result.links.size()) + 1;
-      result.links.push_back({&link,
-                              X_MModel * PoseIn(link.SemanticPose(), "__model__", Where(model)),
-                              prefix + link.Name(), is_static ? kWorld : number});
+      result.links.push_back(
+          {&link, X_MModel * PoseIn(link.SemanticPose(), "__model__", Where(model), kMaxWritten),
+           prefix + link.Name(), is_static ? kWorld : number});
       numbers_[prefix + link.Name()] = number;
       if (is_static) joined_.push_back({number, kWorld});
     }
     for (std::uint64_t i = 0; i < model.ModelCount(); ++i) {
       const sdf::Model& inner = *model.ModelByIndex(i);
-      Visit(inner, X_MModel * PoseIn(inner.SemanticPose(), "__model__", Where(inner)),
+      Visit(inner, X_MModel * PoseIn(inner.SemanticPose(), "__model__", Where(inner), kMaxWritten),
             prefix + inner.Name() + "::", is_static);
     }
     for (std::uint64_t i = 0; i < model.JointCount(); ++i) {

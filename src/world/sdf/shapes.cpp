@@ -13,6 +13,7 @@
 #include "hires/geometry/angles.h"
 #include "world/sdf/polygon_cut.h"
 #include "world/sdf/prune_sdf.h"
+#include "world/sdf_model.h"
 
 namespace hires::world {
 namespace {
@@ -64,10 +65,10 @@ std::vector<double> SizesAt(const sdf::ElementPtr& shape, const std::string& nam
                             std::size_t count, const std::string& where) {
   std::vector<double> sizes = NumbersAt(shape, name, count, where);
   for (const double size : sizes) {
-    if (size > 0.0 && size <= 2000.0) continue;
+    if (size > 0.0 && size <= kMaxSize) continue;
     throw base::ConfigError(
-        fmt::format("{}: <{}> of its <{}> is {} m, wanted above 0 and at most 2000 m", where, name,
-                    KindOf(shape), size));
+        fmt::format("{}: <{}> of its <{}> is {} m, wanted above 0 and at most {} m", where, name,
+                    KindOf(shape), size, kMaxSize));
   }
   return sizes;
 }
