@@ -124,6 +124,33 @@ std::vector<Oddity> Oddities() {
          return StaticModel(n, "<pose>5e6 0 0 0 0 0</pose>" + LinkWithShape(kUnitBox));
        },
        "'%s'"},
+      {"nothing collides", false,
+       [](Name n) {
+         return StaticModel(n, LinkWithShape(kUnitBox,
+                                             "<surface><contact><collide_bitmask>0x0"
+                                             "</collide_bitmask></contact></surface>"));
+       },
+       "<collide_bitmask> of 0"},
+      {"two shapes", false,
+       [](Name n) {
+         return StaticShape(n, std::string(kUnitBox) + "<sphere><radius>1</radius></sphere>");
+       },
+       "of several shapes"},
+      {"second pose", false,
+       [](Name n) {
+         return StaticModel(
+             n, "<pose>0 0 0 0 0 0</pose>" + LinkWithShape(kUnitBox) + "<pose>9 0 0 0 0 0</pose>");
+       },
+       "<pose> more in a <model>"},
+      {"origin", false,
+       [](Name n) { return StaticModel(n, "<link name='l'><origin xyz='1 0 0'/></link>") + ""; },
+       "<origin> in <link> left out, as SDF knows none there (was <pose> meant?)"},
+      {"no number", true,
+       [](Name n) { return StaticShape(n, "<sphere><radius>r_" + n + "</radius></sphere>"); },
+       "<radius> in <sphere> is 'r_%s', wanted 1 number"},
+      {"too few numbers", true,
+       [](Name n) { return StaticShape(n, "<box><size>1 1</size></box>"); },
+       "<size> in <box> is '1 1', wanted 3 numbers"},
       {"area on what moves", true,
        [](Name n) {
          return LooseCube("cube_" + n) +

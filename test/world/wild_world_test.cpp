@@ -5,6 +5,7 @@
 
 #include <cmath>
 #include <cstdlib>
+#include <set>
 
 #include "hires/base/error.h"
 #include "hires/base/log.h"
@@ -424,6 +425,103 @@ TEST_F(WildWorldTest, AStateThatSaysOtherwiseIsNamed) {
   EXPECT_THAT(
       Load(box + fmt::format(state, 3)).notes,
       ElementsAre(AllOf(HasSubstr("1 model that <state> has elsewhere"), HasSubstr("'a'"))));
+}
+
+TEST_F(WildWorldTest, AStateOfOtherLinksOrSizesIsNamed) {
+  base::Rng rng(11);
+  for (int i = 0; i < 30; ++i) {
+    const double x = rng.Uniform(-3, 3), yaw = rng.Uniform(-3, 3), along = rng.Uniform(-2, 2);
+    const std::string pose = fmt::format("<pose>{} 2 0 0 0 {}</pose>", x, yaw);
+    const std::string box =
+        Model("a", "<static>1</static>" + pose + Link("l", fmt::format("{} 0 0 0 0 0", along), ""));
+    const double off = i % 2 == 0 ? 0.0 : rng.Uniform(0.02, 3.0);
+    const double scale = i % 3 == 0 ? 1.0 : rng.Uniform(1.1, 3.0);
+    const auto notes =
+        Load(box + fmt::format("<state world_name='w'><model name='a'>{}<scale>1 {} 1</scale><link "
+                               "name='l'><pose>{} {} 0 0 0 {}</pose></link></model></state>",
+                               pose, scale, x + (along + off) * std::cos(yaw),
+                               2 + (along + off) * std::sin(yaw), yaw))
+            .notes;
+    EXPECT_EQ(notes.size(), (off > 0.0 ? 1u : 0u) + (scale > 1.0 ? 1u : 0u)) << i;
+    if (off > 0.0) {
+      EXPECT_THAT(notes.at(0), HasSubstr("with links that <state> has elsewhere"));
+    }
+  }
+}
+
+TEST_F(WildWorldTest, WhatNothingCollidesWithIsLeftOutAndSaid) {
+  base::Rng rng(12);
+  for (int i = 0; i < 30; ++i) {
+    const bool has_bits = i % 3 == 0, is_plain = i % 3 == 1;
+    const std::string mask = has_bits     ? fmt::format("{:#x}", 1 + rng.Index(0xfffe))
+                             : i % 2 == 0 ? "0"
+                                          : "0x0000";
+    const std::string contact =
+        is_plain ? fmt::format("<collide_without_contact>{}</collide_without_contact>",
+                               i % 2 == 0 ? "true" : "1")
+                 : "<collide_bitmask>" + mask + "</collide_bitmask>";
+    const World world =
+        Load(StaticModel("zone", LinkWithShape(kUnitBox, "<surface><contact>" + contact +
+                                                             "</contact></surface>")) +
+             StaticModel("wall", LinkWithShape(kUnitBox)));
+    ASSERT_EQ(world.statics.size(), has_bits ? 2u : 1u) << contact;
+    EXPECT_EQ(world.statics[0].name, "wall");
+    if (has_bits) {
+      EXPECT_THAT(world.notes, IsEmpty());
+    } else {
+      EXPECT_THAT(world.notes, ElementsAre(AllOf(HasSubstr("1 collision with"),
+                                                 HasSubstr("left out, as nothing collides"))));
+    }
+  }
+}
+
+TEST_F(WildWorldTest, AllShapesOfACollisionAreTakenWhateverTheirNames) {
+  base::Rng rng(13);
+  for (int i = 0; i < 30; ++i) {
+    std::string link;
+    int num_shapes = 0, num_several = 0;
+    for (int j = 1 + rng.Index(3); j > 0; --j) {
+      std::string geometries;
+      const int count = 1 + rng.Index(3);
+      for (int k = 0; k < count; ++k) {
+        const bool is_capsule = rng.Bernoulli(0.3);
+        const std::string shape =
+            is_capsule ? "<ellipsoid><radii>1 2 3</radii></ellipsoid>" : kUnitBox;
+        geometries += k > 0 && rng.Bernoulli(0.5) ? shape : "</geometry><geometry>" + shape;
+      }
+      geometries = "<geometry>" + geometries + "</geometry>";
+      const std::string empty = "<geometry></geometry>";
+      if (geometries.rfind(empty, 0) == 0) geometries.erase(0, empty.size());
+      link += fmt::format("<collision name='c'><pose>{} 0 0 0 0 0</pose>{}</collision>", num_shapes,
+                          geometries);
+      num_shapes += count;
+      num_several += count > 1 ? 1 : 0;
+    }
+    const World world = Load(StaticModel("a", "<link name='l'>" + link + "</link>"));
+    ASSERT_EQ(world.statics.size(), 1u) << link;
+    EXPECT_EQ(world.statics[0].collisions.size(), static_cast<std::size_t>(num_shapes)) << link;
+    EXPECT_EQ(world.notes.size(), num_several > 0 ? 1u : 0u) << link;
+    std::set<std::string> names;
+    for (const auto& shape : world.statics[0].collisions) names.insert(shape.name);
+    EXPECT_EQ(names.size(), static_cast<std::size_t>(num_shapes)) << link;
+  }
+}
+
+TEST_F(WildWorldTest, JointsOfWhatStandsAreNotLookedAt) {
+  const std::string joint = Joint("fixed", "l", "gone");
+  EXPECT_EQ(
+      Load(Model("a", "<static>1</static>" + Link("l", "0 0 0 0 0 0", "") + joint)).statics.size(),
+      1u);
+  EXPECT_THAT(ErrorOf(Model("a", Link("l", "0 0 0 0 0 0", Inertial(1, 1)) + joint)),
+              HasSubstr("gone"));
+  const World world =
+      Load(Model("a", "<static>1</static>" + Link("l", "0 0 0 0 0 0", "") +
+                          "<joint name='j' type='fixed'><pose>3 0 0 0 0 0</pose>"
+                          "<parent>world</parent><child>l</child></joint><link name='m'><pose "
+                          "relative_to='j'>1 0 0 0 0 0</pose><collision name='c'><geometry>" +
+                          kUnitBox + "</geometry></collision></link>"));
+  ASSERT_EQ(world.statics.at(0).collisions.size(), 2u);
+  EXPECT_NEAR(world.statics[0].collisions[1].X_BS.translation.x(), 4.0, 1e-9);
 }
 
 TEST_F(WildWorldTest, GravityOfOldWorldsIsRead) {

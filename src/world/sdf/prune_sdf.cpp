@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 #include <cstdio>
 #include <cstdlib>
 #include <map>
@@ -13,6 +12,9 @@
 #include "base/trimmed.h"
 #include "hires/base/spelling.h"
 #include "hires/base/text.h"
+#include "world/sdf/check_values.h"
+#include "world/sdf/mend_collisions.h"
+#include "world/sdf/state_notes.h"
 
 namespace hires::world {
 namespace {
@@ -41,7 +43,7 @@ const std::map<std::string, Rule>& Rules() {
        {{"pose", "collision"},
         {"sensor", "light", "enable_wind", "self_collide", "must_be_base_link", "velocity_decay",
          "audio_sink", "audio_source", "battery", "projector", "particle_emitter", "plugin",
-         "damping", "origin"}}},
+         "damping"}}},
       {"collision",
        {{"pose", "geometry", "surface"},
         {"laser_retro", "max_contacts", "auto_inertia_params", "mass", "plugin", "material"}}},
@@ -81,6 +83,12 @@ class Pruner {
   Pruner(const std::string& path, SdfFile* file, LoadNotes* notes)
       : path_(path), file_(file), notes_(notes) {}
 
+  void PruneAll(XMLElement* root) {
+    CollectCountedFrom(*root);
+    Prune(root);
+  }
+
+ private:
   void Prune(XMLElement* parent) {
     Prepare(parent);
     const auto rule = Rules().find(parent->Name());
@@ -96,7 +104,6 @@ class Pruner {
     FillEmptyModel(parent);
   }
 
- private:
   std::string PlaceOf(const XMLElement& element) const {
     const char* name = element.Attribute("name");
     return fmt::format("{}:{}{}", path_, element.GetLineNum(),
@@ -110,10 +117,51 @@ class Pruner {
         notes_->Add("include", "whose <experimental:params> are left out", PlaceOf(parent));
       return name.rfind(kShapePrefix, 0) == 0;
     }
+    if (IsUselessJoint(child, parent)) return false;
+    if (IsSecond(child, parent)) return false;
     if (rule.kept.count(name) > 0) return true;
     if (rule.unsaid.count(name) == 0 && !HasOnlyValues(parent.Name()))
       SayLeftOut(child, parent, rule);
     return false;
+  }
+
+  /// Of what stands still joints say nothing, be it that poses count from them.
+  bool IsUselessJoint(const XMLElement& child, const XMLElement& parent) const {
+    const char* name = child.Attribute("name");
+    if (child.Name() != std::string("joint") || parent.Name() != std::string("model")) return false;
+    return IsInStatic(parent) && counted_from_.count(name == nullptr ? "" : name) == 0;
+  }
+
+  static bool IsInStatic(const XMLElement& model) {
+    for (const auto* at = &model; at != nullptr && at->Name() == std::string("model");
+         at = at->Parent()->ToElement()) {
+      if (IsTrue(TrimmedText(at->FirstChildElement("static")))) return true;
+    }
+    return false;
+  }
+
+  /// What there is one of, as libsdformat takes it.
+  bool IsSecond(const XMLElement& child, const XMLElement& parent) {
+    static const std::set<std::string> single{"pose", "static", "surface", "uri", "scale"};
+    const std::string name = child.Name();
+    if (single.count(name) == 0 || child.PreviousSiblingElement(child.Name()) == nullptr)
+      return false;
+    notes_->Add("element",
+                fmt::format("<{}> more in a <{}> left out: the first counts", name, parent.Name()),
+                PlaceOf(child));
+    return true;
+  }
+
+  void CollectCountedFrom(const XMLElement& element) {
+    for (const char* attribute : {"relative_to", "attached_to"}) {
+      const char* written = element.Attribute(attribute);
+      const std::string name = written == nullptr ? "" : written;
+      if (!name.empty()) counted_from_.insert(name.substr(name.rfind(':') + 1));
+    }
+    for (const auto* child = element.FirstChildElement(); child != nullptr;
+         child = child->NextSiblingElement()) {
+      CollectCountedFrom(*child);
+    }
   }
 
   void SayLeftOut(const XMLElement& child, const XMLElement& parent, const Rule& rule) {
@@ -129,10 +177,11 @@ class Pruner {
     } else if (within == "world" && name == "joint") {
       AddWorldJoint(child);
     } else if (within == "world" && name == "state") {
-      SayState(child, parent);
+      NoteState(child, parent, path_, notes_);
     } else {
       std::vector<std::string> known(rule.kept.begin(), rule.kept.end());
-      const std::vector<std::string> likely = base::LikelyNames(name, known);
+      const std::vector<std::string> likely =
+          name == "origin" ? std::vector<std::string>{"pose"} : base::LikelyNames(name, known);
       notes_->Add("element",
                   fmt::format("<{}> in <{}> left out, as SDF knows none there{}", name, within,
                               likely.empty() ? "" : " (was <" + likely.front() + "> meant?)"),
@@ -148,52 +197,17 @@ class Pruner {
                                    PlaceOf(joint)});
   }
 
-  /// A world that was saved while it ran may have its models elsewhere.
-  void SayState(const XMLElement& state, const XMLElement& world) {
-    std::map<std::string, std::string> poses;
-    for (const auto* model = world.FirstChildElement("model"); model != nullptr;
-         model = model->NextSiblingElement("model")) {
-      const char* name = model->Attribute("name");
-      if (name != nullptr) poses[name] = TrimmedText(model->FirstChildElement("pose"));
-    }
-    for (const auto* model = state.FirstChildElement("model"); model != nullptr;
-         model = model->NextSiblingElement("model")) {
-      const char* name = model->Attribute("name");
-      const auto written = poses.find(name == nullptr ? "" : name);
-      if (written == poses.end() || model->FirstChildElement("pose") == nullptr) continue;
-      if (AreSamePlace(TrimmedText(model->FirstChildElement("pose")), written->second)) continue;
-      notes_->Add("model",
-                  "that <state> has elsewhere: taken where its own <pose> says, the state is left "
-                  "out",
-                  PlaceOf(*model));
-    }
-    for (const char* change : {"insertions", "deletions"}) {
-      if (const XMLElement* element = state.FirstChildElement(change))
-        notes_->Add("element", fmt::format("<{}> in <state> left out", change), PlaceOf(*element));
-    }
-  }
-
-  static bool AreSamePlace(const std::string& a, const std::string& b) {
-    constexpr double kSame = 5e-3;  // [m], [rad]
-    const char* at = a.c_str();
-    const char* other = b.c_str();
-    for (int i = 0; i < 6; ++i) {
-      char* end = nullptr;
-      const double one = std::strtod(at, &end);
-      at = end;
-      const double two = std::strtod(other, &end);
-      other = end;
-      if (std::abs(one - two) > kSame) return false;
-    }
-    return true;
-  }
-
   /// What is to be put otherwise before children are judged.
   void Prepare(XMLElement* element) {
     const std::string name = element->Name();
+    TakeOldOrigin(element);
+    CheckNumbersOf(element, path_, notes_);
     if (name == "sdf") TakeVersion(element);
     if (name == "world") TakeOldGravity(element);
-    if (name == "link") PrepareLink(element);
+    if (name == "link") {
+      MendCollisions(element, path_, notes_);
+      PrepareLink(element);
+    }
     if (name == "collision") {
       if (XMLElement* density = element->FirstChildElement("density")) density->SetName(kDensity);
     }
@@ -215,6 +229,11 @@ class Pruner {
   void TakeVersion(XMLElement* root) {
     const char* written = root->Attribute("version");
     file_->version = written == nullptr ? "" : written;
+    if (file_->version.empty()) {
+      notes_->Add("file", "without a version of SDF read as " + sdf::SDF::Version(), path_);
+      file_->version = sdf::SDF::Version();
+      root->SetAttribute("version", file_->version.c_str());
+    }
     int minor = 0, newest = 0;
     char more = 0;
     if (std::sscanf(file_->version.c_str(), "1.%d%c", &minor, &more) != 1) return;
@@ -223,6 +242,16 @@ class Pruner {
                 path_);
     file_->version = sdf::SDF::Version();
     root->SetAttribute("version", file_->version.c_str());
+  }
+
+  /// Up to SDF 1.2 poses stand in an attribute.
+  static void TakeOldOrigin(XMLElement* element) {
+    XMLElement* origin = element->FirstChildElement("origin");
+    const char* pose = origin == nullptr ? nullptr : origin->Attribute("pose");
+    if (pose == nullptr || element->FirstChildElement("pose") != nullptr) return;
+    origin->SetName("pose");
+    origin->SetText(std::string(pose).c_str());
+    origin->DeleteAttribute("pose");
   }
 
   /// Up to SDF 1.5 gravity stands in <physics>.
@@ -283,6 +312,7 @@ class Pruner {
   const std::string& path_;
   SdfFile* file_;
   LoadNotes* notes_;
+  std::set<std::string> counted_from_;  // last parts of names that poses and frames give
 };
 
 }  // namespace
@@ -301,11 +331,13 @@ void FillEmptyModel(XMLElement* model) {
 }
 
 void PruneSdf(XMLElement* root, const std::string& path, SdfFile* file, LoadNotes* notes) {
-  Pruner(path, file, notes).Prune(root);
+  Pruner(path, file, notes).PruneAll(root);
   for (const auto* top = root->FirstChildElement(); top != nullptr;
        top = top->NextSiblingElement()) {
     file->num_worlds += top->Name() == std::string("world") ? 1 : 0;
-    file->num_models += top->Name() == std::string("model") ? 1 : 0;
+    if (top->Name() != std::string("model")) continue;
+    const char* name = top->Attribute("name");
+    if (++file->num_models == 1 && name != nullptr) file->model_name = name;
   }
 }
 

@@ -25,7 +25,7 @@ constexpr char kShapePrefix[] = "hires:";       ///< <hires:cone> for <cone>, be
 /// of a newer SDF 1.x than libsdformat's becomes one of its newest, as only elements that both have
 /// are left.
 /// @param root  the <sdf> element.
-/// @param file  gets version, world_joints, num_worlds and num_models.
+/// @param file  gets version, world_joints, num_worlds, num_models and model_name.
 void PruneSdf(tinyxml2::XMLElement* root, const std::string& path, SdfFile* file, LoadNotes* notes);
 
 /// Gives a <model> that holds nothing a link, as libsdformat refuses it otherwise.

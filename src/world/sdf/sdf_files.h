@@ -28,6 +28,7 @@ struct SdfFile {
   std::map<std::string, std::string> includes;  ///< URI -> file, of each <include> in `text`
   std::vector<WorldJoint> world_joints;
   int num_worlds{0}, num_models{0};  ///< that stand at its top, of `text`
+  std::string model_name;            ///< of the first of these models
   long num_elements{0};              ///< of `text`, included files as often as they are included
 };
 using SdfFiles = std::map<std::string, SdfFile>;  ///< by path
