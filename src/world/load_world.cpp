@@ -267,8 +267,23 @@ class WorldBuilder {
     shapes.erase(left, shapes.end());
   }
 
+  /// Nobody asks for an obstacle by its name, so it may get another one.
+  void ClaimObstacle(WorldModel* model) {
+    const std::string wanted = model->name;
+    const auto is_taken = [&] { return names_.count(base::ToLower(model->name)) > 0; };
+    if (is_taken() && obstacles_.count(base::ToLower(wanted)) > 0) {
+      for (int i = 2; is_taken(); ++i) model->name = fmt::format("{}_{}", wanted, i);
+    }
+    ClaimName(model->name, model->where);
+    obstacles_.insert(base::ToLower(model->name));
+  }
+
   void Place(WorldModel model) {
-    ClaimName(model.name, model.where);
+    if (model.object) {
+      ClaimName(model.name, model.where);
+    } else {
+      ClaimObstacle(&model);
+    }
     LeaveOutFar(&model);
     if (model.object && model.object->collisions.empty()) return;
     if (model.object) {
@@ -352,6 +367,7 @@ class WorldBuilder {
   bool has_near_{false};  // anything that stands or is loose
   std::optional<FloorPlane> floor_;
   std::map<std::string, std::string> names_;    // lower case -> where
+  std::set<std::string> obstacles_;             // names that what stands has, lower case
   std::map<std::uint64_t, std::string> kinds_;  // hash of an object model -> its key
   std::set<std::string> kind_names_;            // lower case
 };

@@ -151,6 +151,11 @@ std::vector<Oddity> Oddities() {
       {"too few numbers", true,
        [](Name n) { return StaticShape(n, "<box><size>1 1</size></box>"); },
        "<size> in <box> is '1 1', wanted 3 numbers"},
+      {"two links of one name", true,
+       [](Name n) {
+         return StaticModel(n, "<link name='l_" + n + "'/><link name='l_" + n + "'/>");
+       },
+       "link 'l_%s' has the name of another"},
       {"area on what moves", true,
        [](Name n) {
          return LooseCube("cube_" + n) +

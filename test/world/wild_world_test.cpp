@@ -507,6 +507,27 @@ TEST_F(WildWorldTest, AllShapesOfACollisionAreTakenWhateverTheirNames) {
   }
 }
 
+TEST_F(WildWorldTest, ObstaclesNeedNoNamesOfTheirOwn) {
+  const World world = Load(StaticModel("Wall", LinkWithShape(kUnitBox)) +
+                           StaticModel("wall", LinkWithShape(kUnitBox)) +
+                           StaticModel("WALL", LinkWithShape(kUnitBox)));
+  ASSERT_EQ(world.statics.size(), 3u);
+  std::set<std::string> names;
+  for (const StaticBody& body : world.statics) names.insert(base::ToLower(body.name));
+  EXPECT_EQ(names.size(), 3u);
+  EXPECT_THAT(ErrorOf(StaticModel("Cup", LinkWithShape(kUnitBox)) + LooseCube("cup")),
+              HasSubstr("has the name of another"));
+  EXPECT_THAT(ErrorOf(StaticModel("a", LinkWithShape(kUnitBox)) +
+                      StaticModel("a", LinkWithShape(kUnitBox))),
+              AllOf(HasSubstr("test.world:4: model 'a' has the name of another, in line 3"),
+                    Not(HasSubstr("already exists"))));
+  WriteModel("crate", StaticModel("crate", LinkWithShape(kUnitBox)));
+  const std::string include = "<include><uri>model://crate</uri></include>\n";
+  EXPECT_THAT(ErrorOf(include + include),
+              AllOf(HasSubstr("test.world:4: model 'crate' has the name of another, in line 3"),
+                    HasSubstr("<name> of its own"), Not(HasSubstr("already exists"))));
+}
+
 TEST_F(WildWorldTest, JointsOfWhatStandsAreNotLookedAt) {
   const std::string joint = Joint("fixed", "l", "gone");
   EXPECT_EQ(
@@ -522,6 +543,23 @@ TEST_F(WildWorldTest, JointsOfWhatStandsAreNotLookedAt) {
                           kUnitBox + "</geometry></collision></link>"));
   ASSERT_EQ(world.statics.at(0).collisions.size(), 2u);
   EXPECT_NEAR(world.statics[0].collisions[1].X_BS.translation.x(), 4.0, 1e-9);
+}
+
+TEST_F(WildWorldTest, AllWrongValuesAndNamesAreToldWithTheirLines) {
+  const std::string error =
+      ErrorOf(StaticModel("table", "<pose>1 2 x 0 0 0</pose>" + LinkWithShape(kUnitBox)) +
+              StaticModel("b", LinkWithShape("<box><size>1 1</size></box>")) +
+              StaticModel("c", LinkWithShape("<cylinder><radius>abc</radius><length>1</length>"
+                                             "</cylinder>")) +
+              StaticModel("d", "<pose relative_to='tabel'/>" + LinkWithShape(kUnitBox)));
+  EXPECT_THAT(
+      error,
+      AllOf(HasSubstr("test.world:3: <pose> in <model> is '1 2 x 0 0 0', wanted 6 numbers"),
+            HasSubstr("test.world:4: <size> in <box> is '1 1', wanted 3 numbers"),
+            HasSubstr("test.world:5: <radius> in <cylinder> is 'abc', wanted 1 number"),
+            HasSubstr("test.world:6: relative_to of a <pose>: name 'tabel' is unknown; did you "
+                      "mean 'table'"),
+            Not(HasSubstr("Graph")), Not(HasSubstr("Error reading"))));
 }
 
 TEST_F(WildWorldTest, GravityOfOldWorldsIsRead) {

@@ -12,6 +12,7 @@
 #include "base/files/plain_xml.h"
 #include "hires/base/error.h"
 #include "hires/base/text.h"
+#include "world/sdf/check_names.h"
 #include "world/sdf/line_printer.h"
 #include "world/sdf/pose_chains.h"
 #include "world/sdf/prune_sdf.h"
@@ -176,6 +177,13 @@ class Walk {
         MakeEmptyModel(child);
       }
     }
+    CheckNames(
+        parent, path, file->version,
+        [&](const XMLElement& include) {
+          const std::string uri = TrimmedText(include.FirstChildElement("uri"));
+          return files_.at(file->includes.at(uri)).model_name;
+        },
+        notes_);
     FillEmptyModel(parent);
   }
 

@@ -1,0 +1,125 @@
+#include "world/sdf/check_names.h"
+
+#include <fmt/format.h>
+
+#include <cstdio>
+#include <map>
+#include <set>
+#include <vector>
+
+#include "hires/base/text.h"
+#include "world/sdf/prune_sdf.h"
+
+namespace hires::world {
+namespace {
+
+using tinyxml2::XMLElement;
+
+class NamesChecker {
+ public:
+  NamesChecker(XMLElement* scope, const std::string& path,
+               const std::function<std::string(const XMLElement&)>& name_of_file, LoadNotes* notes)
+      : scope_(scope), path_(path), name_of_file_(name_of_file), notes_(notes) {}
+
+  void CheckEqualNames() {
+    for (XMLElement* child = scope_->FirstChildElement(); child != nullptr;
+         child = child->NextSiblingElement()) {
+      const std::string kind = KindOf(*child), name = NameOf(*child);
+      if (!name.empty()) names_.insert(name);
+      is_open_ = is_open_ || child->FirstChildElement(kMerged) != nullptr;
+      if (kind.empty() || name.empty()) continue;
+      const auto [first, is_new] = lines_.emplace(std::make_pair(kind, name), child->GetLineNum());
+      if (is_new) continue;
+      notes_->AddProblem(fmt::format(
+          "{}:{}: {} '{}' has the name of another, in line {}; {}", path_, child->GetLineNum(),
+          kind, name, first->second,
+          child->Name() == std::string("include") ? "give it a <name> of its own" : "rename one"));
+      Rename(name, child);
+    }
+  }
+
+  void CheckWhatPosesCountFrom() {
+    if (is_open_) return;  // a merged model brings names
+    for (XMLElement* child = scope_->FirstChildElement(); child != nullptr;
+         child = child->NextSiblingElement()) {
+      Check(child, "attached_to");
+      CheckPose(child);
+      if (child->Name() != std::string("link")) continue;
+      for (XMLElement* part = child->FirstChildElement(); part != nullptr;
+           part = part->NextSiblingElement()) {
+        CheckPose(part);
+      }
+    }
+  }
+
+ private:
+  static std::string KindOf(const XMLElement& element) {
+    const std::string name = element.Name();
+    if (name == "include") return "model";
+    return name == "link" || name == "model" || name == "joint" || name == "frame" ? name : "";
+  }
+
+  std::string NameOf(const XMLElement& element) const {
+    if (element.Name() == std::string("include")) {
+      const std::string own = TrimmedText(element.FirstChildElement("name"));
+      return own.empty() ? name_of_file_(element) : own;
+    }
+    const char* name = element.Attribute("name");
+    return name == nullptr ? "" : name;
+  }
+
+  static void Rename(const std::string& name, XMLElement* element) {
+    const std::string other = fmt::format("{}_of_line_{}", name, element->GetLineNum());
+    if (element->Name() != std::string("include")) {
+      element->SetAttribute("name", other.c_str());
+      return;
+    }
+    XMLElement* own = element->FirstChildElement("name");
+    if (own == nullptr) {
+      own = element->GetDocument()->NewElement("name");
+      element->InsertEndChild(own);
+    }
+    own->SetText(other.c_str());
+  }
+
+  void CheckPose(XMLElement* element) {
+    if (XMLElement* pose = element->FirstChildElement("pose")) Check(pose, "relative_to");
+  }
+
+  void Check(XMLElement* element, const char* attribute) {
+    const char* written = element->Attribute(attribute);
+    const std::string whole = written == nullptr ? "" : written;
+    const std::string name = whole.substr(0, whole.find("::"));
+    const bool is_reserved = name == "world" || name.rfind("__", 0) == 0;
+    if (name.empty() || is_reserved || names_.count(name) > 0) return;
+    notes_->AddProblem(fmt::format(
+        "{}:{}: {} of a <{}>: {}", path_, element->GetLineNum(), attribute, element->Name(),
+        base::UnknownName("name", name, {names_.begin(), names_.end()})));
+    element->DeleteAttribute(attribute);
+  }
+
+  XMLElement* scope_;
+  const std::string& path_;
+  const std::function<std::string(const XMLElement&)>& name_of_file_;
+  LoadNotes* notes_;
+  std::set<std::string> names_;
+  bool is_open_{false};
+  std::map<std::pair<std::string, std::string>, int> lines_;  // by kind and name
+};
+
+}  // namespace
+
+void CheckNames(XMLElement* scope, const std::string& path, const std::string& version,
+                const std::function<std::string(const XMLElement&)>& name_of_file,
+                LoadNotes* notes) {
+  const std::string kind = scope->Name();
+  if (kind != "world" && kind != "model") return;
+  NamesChecker checker(scope, path, name_of_file, notes);
+  checker.CheckEqualNames();
+  int minor = 0;
+  constexpr int kFirst = 7;  // SDF 1.7 has relative_to
+  if (std::sscanf(version.c_str(), "1.%d", &minor) == 1 && minor >= kFirst)
+    checker.CheckWhatPosesCountFrom();
+}
+
+}  // namespace hires::world
