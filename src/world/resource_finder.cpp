@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cctype>
 #include <cstdlib>
 #include <filesystem>
 
@@ -48,6 +49,36 @@ std::string WithoutBlanks(const std::string& uri) {
   std::string text;
   for (const char c : uri) text += c == ' ' ? std::string("%20") : std::string(1, c);
   return text;
+}
+
+/// "%20" and the like as the letters that they stand for.
+std::string Decoded(const std::string& uri) {
+  std::string text;
+  for (std::size_t i = 0; i < uri.size(); ++i) {
+    const auto is_digit = [&](std::size_t at) {
+      return at < uri.size() && std::isxdigit(static_cast<unsigned char>(uri[at])) != 0;
+    };
+    const bool is_escape = uri[i] == '%' && is_digit(i + 1) && is_digit(i + 2);
+    text += is_escape ? static_cast<char>(std::stoi(uri.substr(i + 1, 2), nullptr, 16)) : uri[i];
+    if (is_escape) i += 2;
+  }
+  return text;
+}
+
+/// What is found by a URI as it stands, else by what its escapes stand for.
+std::string FindEither(const std::string& uri,
+                       const std::function<std::string(const std::string&)>& find) {
+  const std::string decoded = Decoded(uri);
+  if (decoded == uri) return find(uri);
+  try {
+    return find(uri);
+  } catch (const base::ConfigError&) {
+    try {
+      return find(decoded);
+    } catch (const base::ConfigError&) {
+    }
+    throw;
+  }
 }
 
 bool IsRelative(const std::string& uri) {
@@ -198,18 +229,23 @@ std::string ResourceFinder::FindBeside(const std::string& uri, const std::string
                                       path.string(), NearestFile(path.string())));
 }
 
+std::string ResourceFinder::Find(const std::string& uri, const std::string& where,
+                                 const std::string& from_file, bool has_file) const {
+  return FindEither(uri, [&](const std::string& either) {
+    return IsRelative(either) && has_file ? FindBeside(either, from_file, where)
+                                          : FindByScheme(either, FolderOf(from_file), where);
+  });
+}
+
 std::string ResourceFinder::FindModel(const std::string& uri, const std::string& where,
                                       const std::string& from_file) const {
-  const std::string path = IsRelative(uri) && !from_file.empty()
-                               ? FindBeside(uri, from_file, where)
-                               : FindByScheme(uri, FolderOf(from_file), where);
+  const std::string path = Find(uri, where, from_file, !from_file.empty());
   return IsFolder(path) ? ModelFileIn(path, uri, where) : path;
 }
 
 std::string ResourceFinder::FindMesh(const std::string& uri, const std::string& from_file,
                                      const std::string& where) const {
-  return IsRelative(uri) ? FindBeside(uri, from_file, where)
-                         : FindByScheme(uri, FolderOf(from_file), where);
+  return Find(uri, where, from_file, true);
 }
 
 }  // namespace hires::world

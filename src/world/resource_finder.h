@@ -47,6 +47,10 @@ class ResourceFinder {
                            const std::string& where) const;
   std::string FindBeside(const std::string& uri, const std::string& from_file,
                          const std::string& where) const;
+  /// By the URI as it stands, else by what its escapes (%20) stand for.
+  /// @param has_file  a path without a scheme is relative to `from_file`.
+  std::string Find(const std::string& uri, const std::string& where, const std::string& from_file,
+                   bool has_file) const;
   /// Why `name`, which `uri` gives, is in none of the folders.
   std::string NotThere(const std::string& uri, const std::string& name, const std::string& where,
                        const std::vector<std::string>& folders) const;

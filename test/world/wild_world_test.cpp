@@ -562,6 +562,37 @@ TEST_F(WildWorldTest, AllWrongValuesAndNamesAreToldWithTheirLines) {
             Not(HasSubstr("Graph")), Not(HasSubstr("Error reading"))));
 }
 
+TEST_F(WildWorldTest, OldFormatsAndNoneAreToldOrRead) {
+  const auto error_of = [&](const std::string& text) {
+    return MessageOf<base::ConfigError>([&] { LoadWorld(folder_.Write("a.world", text)); });
+  };
+  EXPECT_THAT(error_of("<gazebo version='1.2'><world name='w'/></gazebo>"),
+              AllOf(HasSubstr("old format"), HasSubstr("gz sdf --convert")));
+  const std::string box = StaticModel("a", LinkWithShape(kUnitBox));
+  for (const char* version : {"", " version=''"}) {
+    const World world = LoadWorld(folder_.Write(
+        "a.world", fmt::format("<sdf{}><world name='w'>{}</world></sdf>", version, box)));
+    EXPECT_EQ(world.statics.size(), 1u);
+    EXPECT_THAT(world.notes, ElementsAre(HasSubstr("without a version of SDF read as 1.9")));
+  }
+}
+
+TEST_F(WildWorldTest, EscapesInAddressesAreRead) {
+  WriteModel("my crate (1)", StaticModel("crate", LinkWithShape(kUnitBox)));
+  for (const char* uri : {"model://my crate (1)", "model://my%20crate%20%281%29",
+                          "models/my%20crate (1)/model.sdf"}) {
+    EXPECT_EQ(Load(fmt::format("<include><uri>{}</uri></include>", uri)).statics.size(), 1u);
+  }
+  const std::string file = "file://" + folder_.path("models/my crate (1)/model.sdf");
+  EXPECT_EQ(Load("<include><uri>" + base::Join(base::Split(file, ' '), "%20") + "</uri></include>")
+                .statics.size(),
+            1u);
+  EXPECT_THAT(ErrorOf("<include><uri>model://none%20</uri></include>"),
+              HasSubstr("'model://none%20' is not there"));
+  EXPECT_THAT(ErrorOf("<include><uri>model://%2e%2e/%2e%2e/x</uri></include>"),
+              HasSubstr("is not there"));
+}
+
 TEST_F(WildWorldTest, GravityOfOldWorldsIsRead) {
   EXPECT_EQ(Load("<physics type='ode'><gravity>0 0 -1.6</gravity></physics>", "1.5").gravity, 1.6);
 }

@@ -118,7 +118,11 @@ std::string WhyNoWorldBy(const std::string& root, const std::string& path) {
       {"model", {"a model.config", "a world includes its folder by <uri>model://...</uri>"}},
       {"mujoco", {"a model for MuJoCo (MJCF)", "write its bodies as SDF"}},
       {"svg", {"a picture", "of a map, give the YAML file that names it with --map"}}};
-  if (root == "sdf" || root == "gazebo") return "";
+  if (root == "sdf") return "";
+  if (root == "gazebo") {
+    return Is(path, "of an old format (<gazebo>, up to SDF 1.2)",
+              "convert it: `gz sdf --convert FILE` of a Gazebo up to 11 writes SDF into its place");
+  }
   const auto known = kinds.find(root);
   if (known != kinds.end()) return Is(path, known->second.first, known->second.second);
   return fmt::format("{}: its outermost element is <{}>, wanted <sdf> round a <world>", path, root);
