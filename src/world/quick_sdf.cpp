@@ -1,6 +1,7 @@
 #include "world/quick_sdf.h"
 
 #include <algorithm>
+#include <functional>
 #include <iterator>
 #include <map>
 #include <mutex>
@@ -117,23 +118,48 @@ std::set<std::string> NamesIn(const sdf::ElementPtr& model) {
   return names;
 }
 
-void Rename(const std::set<std::string>& names, const std::string& scope,
-            const sdf::ParamPtr& value) {
-  if (value == nullptr) return;
-  const std::string name = value->GetAsString();
-  if (names.count(name.substr(0, name.find("::"))) > 0) value->SetFromString(scope + "::" + name);
+/// The names that a merged model brings to the model that it is merged into, and the name that it
+/// has there, as it stays a model of its own here.
+struct MergedNames {
+  std::set<std::string> names;
+  std::string scope;
+};
+
+/// What is called so from the model that it is merged into.
+std::string ByScope(const MergedNames& merged, const std::string& name) {
+  const bool is_part = merged.names.count(name.substr(0, name.find("::"))) > 0;
+  return is_part ? merged.scope + "::" + name : name;
 }
 
-/// A model that is merged into another stays a model in it here; so what names its parts without
-/// their scope gets that.
-void NameByScope(const std::set<std::string>& names, const std::string& scope,
-                 const sdf::ElementPtr& element) {
+/// The same from beside that model.
+std::string ByScopeIn(const std::string& model, const MergedNames& merged,
+                      const std::string& name) {
+  const std::string start = model + "::";
+  const bool is_in_it = name.compare(0, start.size(), start) == 0;
+  return is_in_it ? start + ByScope(merged, name.substr(start.size())) : name;
+}
+
+using Renaming = std::function<std::string(const std::string&)>;
+
+void Rename(const Renaming& renamed, const sdf::ParamPtr& value) {
+  if (value == nullptr) return;
+  const std::string name = value->GetAsString(), other = renamed(name);
+  if (other != name) value->SetFromString(other);
+}
+
+/// Of all that names something of a world or model; what stands in a model in it does not, but for
+/// the model's own pose.
+void RenameIn(const Renaming& renamed, const sdf::ElementPtr& element) {
   for (const char* attribute : {"relative_to", "attached_to", "placement_frame", "canonical_link"})
-    Rename(names, scope, element->GetAttribute(attribute));
+    Rename(renamed, element->GetAttribute(attribute));
   for (const sdf::ElementPtr& child : ChildrenOf(element)) {
     const std::string name = child->GetName();
-    if (name == "parent" || name == "child") Rename(names, scope, child->GetValue());
-    if (name != "model") NameByScope(names, scope, child);
+    if (name == "parent" || name == "child") Rename(renamed, child->GetValue());
+    if (name != "model") {
+      RenameIn(renamed, child);
+    } else if (child->HasElement("pose")) {
+      Rename(renamed, child->GetElement("pose")->GetAttribute("relative_to"));
+    }
   }
 }
 
@@ -190,25 +216,47 @@ sdf::SDFPtr QuickReader::ReadPart(const std::string& text, const std::string& pa
 void QuickReader::ResolveIncludes(const sdf::ElementPtr& parent, const std::string& path) {
   const std::vector<sdf::ElementPtr> children = ChildrenOf(parent);
   const auto is_include = [](const auto& child) { return child->GetName() == "include"; };
-  if (std::none_of(children.begin(), children.end(), is_include)) {
-    for (const sdf::ElementPtr& child : children) ResolveIncludes(child, path);
-    return;
+  const bool has_include = std::any_of(children.begin(), children.end(), is_include);
+  if (has_include) {
+    for (const sdf::ElementPtr& child : children) parent->RemoveChild(child);
   }
-  for (const sdf::ElementPtr& child : children) parent->RemoveChild(child);
   for (const sdf::ElementPtr& child : children) {
     if (!is_include(child)) ResolveIncludes(child, path);
     const sdf::ElementPtr wanted = is_include(child) ? Included(child, path) : child;
-    if (wanted != nullptr) Insert(wanted, parent);
+    if (wanted != nullptr && has_include) Insert(wanted, parent);
   }
-  if (parent->GetName() != "model") return;
   for (const sdf::ElementPtr& child : children) {
-    if (!is_include(child) || !IsMerged(child)) continue;
-    const sdf::ElementPtr model =
-        ModelIn(files_.at(path).includes.at(child->Get<std::string>("uri")));
-    if (model == nullptr) continue;
-    const std::string scope = child->HasElement("name") ? child->Get<std::string>("name")
+    if (is_include(child) && IsMerged(child)) {
+      NamePartsOf(child, path, parent);
+    } else if (child->GetName() == "model") {
+      NamePartsBeside(child, parent);
+    }
+  }
+}
+
+/// Names by their scope what a merged model brings to the model that it is merged into.
+void QuickReader::NamePartsOf(const sdf::ElementPtr& include, const std::string& path,
+                              const sdf::ElementPtr& parent) {
+  const auto& includes = files_.at(path).includes;
+  const auto found = includes.find(include->Get<std::string>("uri"));
+  const sdf::ElementPtr model = found == includes.end() ? nullptr : ModelIn(found->second);
+  if (model == nullptr || parent->GetName() != "model") return;
+  const std::string scope = include->HasElement("name") ? include->Get<std::string>("name")
                                                         : model->Get<std::string>("name");
-    NameByScope(NamesIn(model), scope, parent);
+  const MergedNames merged{NamesIn(model), scope};
+  RenameIn([&](const std::string& name) { return ByScope(merged, name); }, parent);
+  merged_[parent].push_back({merged.names, merged.scope});
+}
+
+/// The same for what names them from beside the model that they are merged into.
+void QuickReader::NamePartsBeside(const sdf::ElementPtr& model, const sdf::ElementPtr& parent) {
+  const auto found = merged_.find(model);
+  if (found == merged_.end()) return;
+  const std::string name_of_model = model->Get<std::string>("name");
+  for (const auto& [names, scope] : found->second) {
+    const MergedNames merged{names, scope};
+    RenameIn([&](const std::string& name) { return ByScopeIn(name_of_model, merged, name); },
+             parent);
   }
 }
 

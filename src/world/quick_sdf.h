@@ -7,6 +7,7 @@
 #include <sdf/Types.hh>
 #include <set>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "world/sdf/load_notes.h"
@@ -41,11 +42,16 @@ class QuickReader {
   void ResolveIncludes(const sdf::ElementPtr& parent, const std::string& path);
   sdf::ElementPtr Included(const sdf::ElementPtr& include, const std::string& path);
   sdf::ElementPtr ModelIn(const std::string& path);
+  void NamePartsOf(const sdf::ElementPtr& include, const std::string& path,
+                   const sdf::ElementPtr& parent);
+  void NamePartsBeside(const sdf::ElementPtr& model, const sdf::ElementPtr& parent);
 
   const SdfFiles& files_;
   LoadNotes* notes_;
   sdf::ParserConfig config_;
   std::map<std::string, sdf::SDFPtr> documents_;  // of included files
+  /// Names and scope of what is merged into a model.
+  std::map<sdf::ElementPtr, std::vector<std::pair<std::set<std::string>, std::string>>> merged_;
 };
 
 /// Each of libsdformat's errors as a problem, with file and line as far as known.

@@ -16,6 +16,7 @@
 #include <thread>
 
 #include "hires/base/error.h"
+#include "hires/base/rng.h"
 #include "hires/world/object_catalogue.h"
 #include "world/sdf/model_folders.h"
 #include "world/sdf_file.h"
@@ -192,6 +193,45 @@ TEST_F(QuickSdfFileTest, MergedModelsStandWhereLibsdformatPutsThem) {
     EXPECT_TRUE(std::any_of(shapes.begin(), shapes.end(), [&](const auto& shape) {
       return (shape.X_BS.translation - wanted.translation).norm() < 1e-9;
     })) << link;
+  }
+}
+
+TEST_F(QuickSdfFileTest, WhatNamesPartsOfMergedModelsStandsWhereLibsdformatPutsIt) {
+  const std::string shape = "<link name='l'><collision name='c'><geometry>" +
+                            std::string(kUnitBox) + "</geometry></collision></link>";
+  WriteModel("pair", "<model name='pair'><link name='a'><pose>1 2 0 0 0 1</pose>" +
+                         std::string("<collision name='c'><geometry>") + kUnitBox +
+                         "</geometry></collision></link><frame name='tip' attached_to='a'><pose>3 "
+                         "0 0 0 0 0</pose></frame></model>");
+  WriteModel("other", "<model name='other'>" + shape + "</model>");
+  base::Rng rng(5);
+  for (int i = 0; i < 10; ++i) {
+    // Of two decimals, as libsdformat prints six digits of what it merges.
+    const auto number = [&] { return rng.Index(600) / 100.0 - 3.0; };
+    const auto pose = [&](const std::string& from) {
+      return fmt::format("<pose relative_to='{}'>{} {} 0 0 0 {}</pose>", from, number(), number(),
+                         number());
+    };
+    const std::string path = Write(
+        "<model name='m'>" + pose("") + "<static>true</static><include merge='true'><uri>" +
+        "model://pair</uri><name>q</name>" + pose("") + "</include><include><uri>model://other" +
+        "</uri><name>r</name>" + pose("a") + "</include><model name='n'>" + pose("tip") + shape +
+        "</model></model><model name='beside'><static>true</static>" + pose("m::tip") + shape +
+        "</model>");
+    const sdf::Root straight = ReadStraight(path);
+    const sdf::World& in = *straight.WorldByIndex(0);
+    const World world = LoadWorld(path);
+    ASSERT_EQ(world.statics.size(), 2u);
+    const auto beside = PoseIn(in.ModelByName("beside")->SemanticPose(), "", "");
+    EXPECT_LT((world.statics[0].X_MB.translation - beside.translation).norm(), 1e-9);
+    for (const std::string inner : {"r", "n"}) {
+      const auto wanted =
+          PoseIn(in.ModelByName("m")->ModelByName(inner)->SemanticPose(), "__model__", inner);
+      const auto& shapes = world.statics[1].collisions;
+      EXPECT_TRUE(std::any_of(shapes.begin(), shapes.end(), [&](const auto& shape_M) {
+        return (shape_M.X_BS.translation - wanted.translation).norm() < 1e-9;
+      })) << inner;
+    }
   }
 }
 
