@@ -19,9 +19,9 @@ namespace hires::imagination {
 /// - {pose: [x, y, z], orientation: [w, x, y, z]}, as the panel of Nav2 for RViz saves them.
 /// Case is ignored in keys. Names are those of the keys, or of `name`, `id`, `label`, `room` and
 /// the like beside a pose; others are called goal1, goal2, ... by their number in the file. What is
-/// assumed (no yaw: 0), hardly used (heights: NamedArea::z) or passed over (keys that say nothing of a goal, or hold
-/// none by their names: tolerances, colors, sizes) is logged once for each kind, with the first
-/// place.
+/// assumed (no yaw: 0), hardly used (heights: NamedArea::z) or passed over (keys that say nothing
+/// of a goal, or hold none by their names: tolerances, colors, sizes) is logged once for each kind,
+/// with the first place.
 /// @throws base::ConfigError with all that is wrong, each with its line: also frames that drift or
 /// move (odom, base_link, with or without a robot's name before), and quaternions that are none.
 std::vector<NamedArea> ReadAreaFile(const std::string& path);

@@ -39,8 +39,8 @@ struct Quantity {
   std::optional<Arrival> only_after{};
 };
 
-const std::vector<Quantity>& Quantities() {
-  static const std::vector<Quantity> quantities{
+std::vector<Quantity> OfThingsAndStart() {
+  return {
       {"object_mass", "mass of each loose object, times", "factor", 0.1, 10,
        [](Variation& v) -> double& { return v.mass_factor; }},
       {"object_radius", "radius of the face on which a round object stands, times", "factor", 0.2,
@@ -70,6 +70,11 @@ const std::vector<Quantity>& Quantities() {
        [](Variation& v) -> double& { return v.start_offset.y; }, Arrival::kDocked},
       {"docked_yaw", "likewise, turned", "rad", -0.5, 0.5,
        [](Variation& v) -> double& { return v.start_offset.yaw; }, Arrival::kDocked},
+  };
+}
+
+std::vector<Quantity> OfDriving() {
+  return {
       {"localisation_x", "where it believes it is during the whole rollout, off ahead", "m", -1, 1,
        [](Variation& v) -> double& { return v.localisation_bias.x; }},
       {"localisation_y", "likewise, to the left", "m", -1, 1,
@@ -98,6 +103,11 @@ const std::vector<Quantity>& Quantities() {
        [](Variation& v) -> double& { return v.wheel_damping_factor; }},
       {"sway", "how far the base leans, times", "factor", 0, 10,
        [](Variation& v) -> double& { return v.sway_factor; }},
+  };
+}
+
+std::vector<Quantity> OfSeeingAndGrasping() {
+  return {
       {"detection_noise", "sd of each coordinate of an object that is seen", "m", 0, 0.2,
        [](Variation& v) -> double& { return v.detection_noise; }},
       {"detection_noise_yaw", "sd of its turn", "rad", 0, 1,
@@ -115,6 +125,15 @@ const std::vector<Quantity>& Quantities() {
       {"encoder_noise", "sd of each measured joint", "rad", 0, 0.1,
        [](Variation& v) -> double& { return v.encoder_noise; }},
   };
+}
+
+const std::vector<Quantity>& Quantities() {
+  static const std::vector<Quantity> quantities = [] {
+    std::vector<Quantity> all = OfThingsAndStart();
+    for (const auto& more : {OfDriving(), OfSeeingAndGrasping()})
+      all.insert(all.end(), more.begin(), more.end());
+    return all;
+  }();
   return quantities;
 }
 

@@ -36,8 +36,8 @@ struct CameraStand {
 
 struct TableParams {
   int num_samples{300};    ///< planes through three points; ten times as many are tried at most
-  double tolerance{2.0};        ///< [DepthNoise] from the plane, of points that vote for it
-  double min_share{0.05};       ///< of all measured points, at least on a table
+  double tolerance{2.0};   ///< [DepthNoise] from the plane, of points that vote for it
+  double min_share{0.05};  ///< of all measured points, at least on a table
   double max_inclination{0.2};  ///< [rad] against what is level, where that is known
   double min_height{0.55};      ///< [m] of a table above the floor, where that is known
   double max_height{1.3};       ///< [m] likewise
