@@ -26,6 +26,7 @@ constexpr double kFewKnown = 0.8;                                             //
 constexpr double kAgreeing = 1.0, kAgreeingOfWay = 0.1, kMostAgreeing = 2.0;  // [m]
 constexpr double kAgreeingTurn = 0.5;                                         // [rad]
 constexpr double kWayOfTurn = 0.3;                                            // [m/rad]
+constexpr double kLongestPause = 5.0;                                         // [s] between scans
 
 std::optional<Pose2> OdometryOf(const RobotLog& log, const RobotLog::Scan& scan) {
   if (scan.X_OB) return scan.X_OB;
@@ -43,7 +44,8 @@ std::optional<Pose2> OdometryOf(const RobotLog& log, const RobotLog::Scan& scan)
 /// A scan's moment by the odometry alone, less its jumps.
 struct Moment {
   Pose2 X_OB;
-  double way{0.0};  // [m] until then; a turn counts as kWayOfTurn
+  double way{0.0};       // [m] until then; a turn counts as kWayOfTurn
+  double way_seen{0.0};  // [m] of it, without what was driven while the laser told nothing
   bool is_in_path{false};
 };
 
@@ -52,6 +54,13 @@ bool DoAgree(const Pose2& X_MB, const Moment& at, const Pose2& X_MLater, const M
   const Pose2 off = (X_MLater * (later.X_OB.Inverse() * at.X_OB)).Inverse() * X_MB;
   const double most = std::min(kAgreeing + kAgreeingOfWay * (later.way - at.way), kMostAgreeing);
   return off.position().norm() <= most && std::abs(geometry::WrapToPi(off.yaw)) <= kAgreeingTurn;
+}
+
+/// Whether the laser told something nearly all the way between two moments: after a pause the place
+/// is found anew, and that contradicts nobody.
+bool IsSeen(const Moment& at, const Moment& later) {
+  constexpr double kUnseen = 0.5;  // [m]
+  return (later.way - at.way) - (later.way_seen - at.way_seen) < kUnseen;
 }
 
 class LogLocaliser {
@@ -63,7 +72,7 @@ class LogLocaliser {
   LocalisedLog Result();
 
  private:
-  void TakeMoment(const Pose2& X_OB, ScanOutcome outcome);
+  void TakeMoment(double time, const Pose2& X_OB, ScanOutcome outcome);
   /// Leaves out of the path what its end contradicts.
   void JudgePath();
   double WayKnown() const;
@@ -76,6 +85,7 @@ class LogLocaliser {
   MonteCarloLocalisation filter_;
   LocalisedLog localised_;
   std::optional<Pose2> X_OB_;    // at the scan before
+  double time_{0.0};             // [s] of it
   std::vector<Moment> moments_;  // of all scans that have odometry
   int num_judged_{0}, num_judged_since_{0};
 };
@@ -87,7 +97,7 @@ void LogLocaliser::Take(const RobotLog::Scan& scan) {
     return;
   }
   const ScanOutcome outcome = filter_.Update(scan.time, *X_OB, scan.reading, scan.X_BL);
-  TakeMoment(*X_OB, outcome);
+  TakeMoment(scan.time, *X_OB, outcome);
   TakeEstimate(scan.time, outcome, *X_OB);
   const PoseEstimate& estimate = localised_.last;
   const bool is_good = estimate.status == LocalisationStatus::kGood;
@@ -108,14 +118,17 @@ void LogLocaliser::Take(const RobotLog::Scan& scan) {
   moments_.back().is_in_path = true;
 }
 
-void LogLocaliser::TakeMoment(const Pose2& X_OB, ScanOutcome outcome) {
+void LogLocaliser::TakeMoment(double time, const Pose2& X_OB, ScanOutcome outcome) {
   Moment moment = moments_.empty() ? Moment{} : moments_.back();
   moment.is_in_path = false;
   if (X_OB_ && outcome != ScanOutcome::kOdometryJumped) {
     const Pose2 step = X_OB_->Inverse() * X_OB;
     moment.X_OB = moment.X_OB * step;
-    moment.way += step.position().norm() + kWayOfTurn * std::abs(geometry::WrapToPi(step.yaw));
+    const double way = step.position().norm() + kWayOfTurn * std::abs(geometry::WrapToPi(step.yaw));
+    moment.way += way;
+    if (!IsBad(outcome) && time - time_ <= kLongestPause) moment.way_seen += way;
   }
+  time_ = time;
   moments_.push_back(moment);
 }
 
@@ -129,7 +142,8 @@ void LogLocaliser::JudgePath() {
   for (auto at = moments_.rbegin(); at != moments_.rend(); ++at) {
     if (!at->is_in_path) continue;
     const TimedPose& pose = localised_.path[--left];
-    const bool is_leap = behind && !DoAgree(pose.X_MB, *at, behind->X_MB, *at_behind);
+    const bool is_leap =
+        behind && IsSeen(*at, *at_behind) && !DoAgree(pose.X_MB, *at, behind->X_MB, *at_behind);
     if (is_leap) is_kept = DoAgree(pose.X_MB, *at, kept.back().X_MB, *later);
     behind = &pose;
     at_behind = &*at;
@@ -157,9 +171,9 @@ void LogLocaliser::TakeEstimate(double time, ScanOutcome outcome, const Pose2& X
 double LogLocaliser::WayKnown() const {
   double known = 0.0;
   for (std::size_t i = 0; i < moments_.size(); ++i)
-    if (moments_[i].is_in_path && i > 0) known += moments_[i].way - moments_[i - 1].way;
+    if (moments_[i].is_in_path && i > 0) known += moments_[i].way_seen - moments_[i - 1].way_seen;
   if (moments_.empty() || localised_.path.empty()) return 0.0;
-  return moments_.back().way > 0.0 ? known / moments_.back().way : 1.0;
+  return moments_.back().way_seen > 0.0 ? known / moments_.back().way_seen : 1.0;
 }
 
 LocalisedLog LogLocaliser::Result() {

@@ -234,7 +234,7 @@ TEST_F(LocaliseCommandTest, GapOfTheLaserIsBridgedByOdometry) {
     for (float& range : scans[i].reading.ranges) range = 0.0F;
   }
   const Ended ended = Localise(Log(drive), at_start_);
-  ASSERT_EQ(ended.code, kExitRecommended) << ended.err;
+  ASSERT_EQ(ended.code, kExitRecommended) << ended.err << ended.out;
   EXPECT_THAT(ended.out, HasSubstr("not used    nothing measured 40"));
   EXPECT_LT(ErrorsOf(Trajectory(), truth, 4.0).last, 0.15);
   EXPECT_LT(Trajectory().size(), scans.size()) << "after scan_timeout it does not know";

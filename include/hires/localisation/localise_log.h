@@ -15,7 +15,8 @@ struct LocalisedLog {
   /// out, and so are poses that what it believed at last contradicts.
   TimedPath path;
   int num_contradicted{0};  ///< poses that were left out for that
-  double way_known{0.0};    ///< share in [0, 1] of the way that ends in poses of the path
+  double way_known{0.0};    ///< share in [0, 1] of the way that ends in poses of the path; what was
+                            ///< driven while the laser told nothing does not count
   std::map<ScanOutcome, int> outcomes;         ///< how many scans became what
   std::map<LocalisationStatus, int> statuses;  ///< at the end of how many scans it was what
   int num_without_odometry{0};                 ///< scans that no odometry is near
