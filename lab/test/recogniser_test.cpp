@@ -361,8 +361,12 @@ TEST_F(RecogniserTest, FarAwayNothingIsNamed) {
   int num_things = 0;
   for (int i = 0; i < hires::test_support::Rounds(4); ++i) {
     base::Rng rng = base::Rng(11).Fork(i);
-    const PointCloud cloud = WallWithBoxes(rng.Uniform(4.1, 6.0), &rng);
-    const Recognition seen = recogniser_.Recognise(cloud, std::nullopt, base::Rng(1));
+    const double distance = rng.Uniform(4.1, 6.0);
+    const PointCloud cloud = WallWithBoxes(distance, &rng);
+    EXPECT_FALSE(recogniser_.Recognise(cloud, std::nullopt, base::Rng(1)).segmentation.table)
+        << "a wall is none";
+    const CameraStand above{-Vector3d::UnitZ(), distance + 0.75};  // a table, by what it is told
+    const Recognition seen = recogniser_.Recognise(cloud, above, base::Rng(1));
     for (const Detection& thing : seen.detections) {
       EXPECT_EQ(thing.label, kUnknownLabel);
       EXPECT_TRUE(thing.is_too_far);

@@ -91,7 +91,9 @@ TEST(WriteProfileTest, WhatIsNoLongerACommentIsNoLongerAssumed) {
   std::string checked;
   for (const std::string& line : LinesOf(text)) {
     const bool is_key = line.rfind("# ", 0) == 0 && line.find(": ASSUMED") == std::string::npos &&
-                        line.find(" # ") != std::string::npos;
+                        line.find(" # ") != std::string::npos &&
+                        line.rfind("# laser_link", 0) != 0 &&  // it would drive by it then
+                        line.rfind("# object_on_tray", 0) != 0;
     checked += (is_key ? line.substr(2) : line) + "\n";
   }
   const Robot robot = LoadRobot(folder.Write("checked.yaml", checked));

@@ -151,11 +151,12 @@ std::string WriteProfile(const std::string& path, const std::string& folder) {
   out.Add("", "as answers tell until they are corrected and the '#' is taken away.");
   out.Add("", "docs/tutorial.md, \"Your own robot\", says more.");
   out.Add("urdf: " + InQuotes(TextOf(file)), "as seen from the folder of this file");
-  out.Add("base_link: " + InQuotes(RootOf(robot)),
-          robot.base_height > 0.0
-              ? fmt::format("the base; it is {:.3f} m over the floor, as its shapes reach so deep",
-                            robot.base_height)
-              : "the base, which is taken to lie on the floor");
+  out.AddAssumed(
+      "base_link: " + InQuotes(RootOf(robot)),
+      robot.base_height > 0.0
+          ? fmt::format("the base; it is {:.3f} m over the floor, as its shapes reach so deep",
+                        robot.base_height)
+          : "the base, which is taken to lie on the floor");
   AddTray(profile, &out);
   AddLaser(robot, xml, &out);
   out.AddAssumed("footprint: []", FootprintComment(profile.footprint));
