@@ -107,15 +107,10 @@ class Conversation {
 
  private:
   void RequireServer() {
-    const double give_up = hires::base::SteadyNow() + query_.wait;
-    while (!client_.isServerConnected()) {
-      if (cancelled_() || hires::base::SteadyNow() > give_up) {
-        throw hires::base::ConfigError(fmt::format(
-            "no execution monitor serves the action '{}' at {}; start execution_monitor.launch",
-            kAchieveAction, ros::master::getURI()));
-      }
-      ros::WallDuration(kPollPeriod).sleep();
-    }
+    if (PollUntil([this] { return client_.isServerConnected(); }, query_.wait, cancelled_)) return;
+    throw hires::base::ConfigError(fmt::format(
+        "no execution monitor serves the action '{}' at {}; start execution_monitor.launch",
+        kAchieveAction, ros::master::getURI()));
   }
 
   /// One round of waiting. By the wall's clock: ROS time stands still while the robot's does.

@@ -74,16 +74,11 @@ hires::ImagineGoal GoalOf(const hires::cli::ImagineQuery& query) {
 
 /// @throws ConfigError if no server of the action is there in time.
 void RequireServer(const ImagineClient& client, const std::function<bool()>& cancelled) {
-  const double give_up = hires::base::SteadyNow() + kClientWait;
-  while (!client.isServerConnected()) {
-    if (cancelled() || hires::base::SteadyNow() > give_up) {
-      throw hires::base::ConfigError(fmt::format(
-          "no imagination client serves the action '{}' at {}; start imagination.launch, or add "
-          "--local",
-          kImagineAction, ros::master::getURI()));
-    }
-    ros::WallDuration(kPollPeriod).sleep();
-  }
+  if (PollUntil([&] { return client.isServerConnected(); }, kClientWait, cancelled)) return;
+  throw hires::base::ConfigError(fmt::format(
+      "no imagination client serves the action '{}' at {}; start imagination.launch, or add "
+      "--local",
+      kImagineAction, ros::master::getURI()));
 }
 
 hires::ImagineResult Unconfirmed(const hires::ImagineGoal& goal) {
@@ -131,8 +126,7 @@ hires::imagination::Report ImagineRemotely(const hires::cli::ImagineQuery& query
     throw hires::base::ConfigError(
         "a world, map, robot, area, catalogue or object file is named, but running nodes are asked "
         "about the files that they were started with: leave it away (areas are then the <frame>s "
-        "of "
-        "their world), or add --local");
+        "of their world), or add --local");
   }
   return FromMsg(AskImaginationClient(GoalOf(query), on_interim, cancelled));
 }

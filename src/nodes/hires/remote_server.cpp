@@ -14,6 +14,16 @@
 
 namespace hires_ros {
 
+bool PollUntil(const std::function<bool()>& is_so, double wait,
+               const std::function<bool()>& cancelled) {
+  const double give_up = hires::base::SteadyNow() + wait;
+  while (!is_so()) {
+    if (cancelled() || hires::base::SteadyNow() > give_up) return false;
+    ros::WallDuration(kPollPeriod).sleep();
+  }
+  return true;
+}
+
 void RequireMaster(const std::string& launch_file, const std::string& otherwise) {
   if (ros::master::check()) return;
   throw hires::base::ConfigError(fmt::format(
@@ -41,17 +51,11 @@ double AwaitPublisher(const std::string& topic, double wait, const std::function
 
 void RequireTime(double wait, const std::function<bool()>& cancelled) {
   ros::start();  // listens to /clock
-  const double give_up = hires::base::SteadyNow() + wait;
-  while (!ros::Time::isValid()) {
-    if (cancelled() || hires::base::SteadyNow() > give_up) {
-      throw hires::base::ConfigError(
-          fmt::format("/use_sim_time is true at {}, and nobody publishes /clock: start what "
-                      "simulates the time, "
-                      "or, where that has ended, rosparam set use_sim_time false",
-                      ros::master::getURI()));
-    }
-    ros::WallDuration(kPollPeriod).sleep();
-  }
+  if (PollUntil([] { return ros::Time::isValid(); }, wait, cancelled)) return;
+  throw hires::base::ConfigError(
+      fmt::format("/use_sim_time is true at {}, and nobody publishes /clock: start what simulates "
+                  "the time, or, where that has ended, rosparam set use_sim_time false",
+                  ros::master::getURI()));
 }
 
 }  // namespace hires_ros

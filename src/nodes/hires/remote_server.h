@@ -7,6 +7,12 @@ namespace hires_ros {
 
 constexpr double kPollPeriod = 0.02;  ///< [s] of the wall, between two looks whether an answer came
 
+/// Looks every kPollPeriod whether something is so.
+/// @param wait  [s] at most, by the wall's clock: ROS time may stand still.
+/// @return false if it was not by then, or when it was cancelled.
+bool PollUntil(const std::function<bool()>& is_so, double wait,
+               const std::function<bool()>& cancelled);
+
 /// @param launch_file  of hires, that starts a master with what is to be asked.
 /// @param otherwise  what else helps, after "or"; may be empty.
 /// @throws hires::base::ConfigError if no ROS master answers.
