@@ -39,17 +39,15 @@ class LevelPlane : public pcl::SampleConsensusModelPlane<PclPoint> {
   float least_;  // of the cosine between normal and up
 };
 
-// PCL tells of each sample of points on a line, and where there is no plane; callers say that.
-class WithoutWords {
- public:
-  WithoutWords() { pcl::console::setVerbosityLevel(pcl::console::L_ALWAYS); }
-  ~WithoutWords() { pcl::console::setVerbosityLevel(before_); }
-  WithoutWords(const WithoutWords&) = delete;
-  WithoutWords& operator=(const WithoutWords&) = delete;
-
- private:
-  pcl::console::VERBOSITY_LEVEL before_{pcl::console::getVerbosityLevel()};
-};
+/// PCL tells of each sample of points on a line, and where there is no plane; callers say that. Its
+/// level is one of the process, so it is set once: threads that set it back would hear each other.
+void SilencePcl() {
+  static const bool is_silent = [] {
+    pcl::console::setVerbosityLevel(pcl::console::L_ALWAYS);
+    return true;
+  }();
+  static_cast<void>(is_silent);
+}
 
 }  // namespace
 
@@ -61,7 +59,7 @@ std::optional<Eigen::Vector4d> FindPlaneByRansac(const std::vector<Eigen::Vector
   cloud->resize(points.size());
   for (std::size_t i = 0; i < points.size(); ++i)
     cloud->points[i].getVector3fMap() = points[i].cast<float>();
-  const WithoutWords silence;
+  SilencePcl();
   pcl::RandomSampleConsensus<PclPoint> ransac(
       std::make_shared<LevelPlane>(cloud, up, params.max_inclination), params.tolerance);
   ransac.setMaxIterations(params.max_samples);
