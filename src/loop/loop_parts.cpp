@@ -64,6 +64,8 @@ translation::TranslatorContext ContextOf(const imagination::ImaginationSetup& wo
 
 void Override(const LoopFiles& files, LoopConfig* config) {
   imagination::OverridePaths(files.world, files.robot, files.objects, {}, &config->scene);
+  config->scene.map = files.map;
+  config->scene.areas = files.areas;
   if (!files.domain.empty()) {
     config->execution.domain = files.domain;
     config->execution.operators =

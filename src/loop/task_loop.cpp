@@ -5,6 +5,7 @@
 
 #include "hires/base/error.h"
 #include "hires/base/log.h"
+#include "loop/area_fluents.h"
 #include "loop/loop_parts.h"
 #include "loop/middle_layer.h"
 #include "loop/monitor_shell.h"
@@ -57,6 +58,13 @@ sim_robot::SimSensorParams SensorsIn(const std::string& scenario,
   return sensors;
 }
 
+/// Those that stand in no knowledge file.
+std::vector<std::string> AreasOf(const LoopSetup& setup) {
+  std::vector<std::string> names;
+  for (const world::NamedArea& area : setup.parts().config.scene.areas) names.push_back(area.name);
+  return names;
+}
+
 /// What is on its way between them.
 struct Lines {
   Lines(const LoopMessages& messages, const base::Rng& rng, VirtualClock* clock)
@@ -104,6 +112,8 @@ class TaskPlay {
                     lines_.goals.Send([this, activity] { middle_layer_.Cancel(activity); });
                   }}) {
     blackboard_.Load(scenario.knowledge, order.seed);
+    blackboard_.Write(AreaFluents(parts.config.scene.areas, blackboard_.view()), {}, {},
+                      {knowledge::Source::kKnowledge, 0, -temporal::kForever});
     blackboard_.SetListener([this] { OnWritten(); });
     OnWritten();
   }
@@ -232,7 +242,8 @@ LoopRun PlayTask(const LoopSetup& setup, const LoopOrder& order, const OnAchieve
   }
   const sim_robot::Scenario scenario = sim_robot::ReadScenario(order.scenario);
   const std::string& task = order.task.empty() ? scenario.task : order.task;
-  for (const auto& misfit : sim_robot::NamesThatDoNotFit(scenario, order.scenario, task)) {
+  for (const auto& misfit :
+       sim_robot::NamesThatDoNotFit(scenario, order.scenario, task, AreasOf(setup))) {
     base::Log(base::LogLevel::kWarn, misfit);
   }
   return TaskPlay(setup.parts(), order, scenario, observer).Run(on_status, cancelled);

@@ -4,11 +4,13 @@
 #include <functional>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "hires/imagination/client_config.h"
 #include "hires/imagination/imagination_setup.h"
 #include "hires/planning/operator_data.h"
 #include "hires/simulation/truth_record.h"
+#include "hires/world/named_area.h"
 #include "loop/achieve.h"
 #include "loop/loop_observer.h"
 #include "sim_robot/truth.h"
@@ -18,6 +20,9 @@ namespace hires::loop {
 /// Files instead of those that the configuration names; empty: its own.
 struct LoopFiles {
   std::string world, robot, objects;
+  std::string map;  ///< map_server YAML whose walls are the world instead
+  /// Beside those of the world; what the knowledge does not say of them is told to the Blackboard.
+  std::vector<world::NamedArea> areas;
   std::string domain;     ///< SHOP2 or HDDL
   std::string operators;  ///< empty with a domain: the one beside it, d.yaml for d.lisp
 };

@@ -70,13 +70,18 @@ std::set<std::string> WordsOf(const std::string& task) {
 }  // namespace
 
 std::vector<std::string> NamesThatDoNotFit(const Scenario& scenario, const std::string& path,
-                                           const std::string& task) {
+                                           const std::string& task,
+                                           const std::vector<std::string>& areas) {
   if (scenario.knowledge.empty()) return {};
   std::vector<knowledge::KnowledgeFile> files;
   for (const std::string& file : scenario.knowledge) {
     files.push_back(knowledge::LoadKnowledge(file));
   }
-  const KnownNames known = NamesOf(files);
+  KnownNames known = NamesOf(files);
+  for (const std::string& area : areas) {
+    known.all.emplace(ToLower(area), area);
+    known.places.push_back(area);
+  }
   std::vector<std::string> misfits, there;
   for (const auto& file : files) AddUnknownAreas(file, known, &misfits);
   for (const ScenarioObject& object : scenario.objects) there.push_back(object.name);

@@ -13,9 +13,11 @@ namespace hires::sim_robot {
 /// that On places somewhere and the scenario does not have. Other objects of the knowledge may be
 /// gone. Such a task can be played, and ends with a robot that looks for what is not there. Empty
 /// where the scenario names no knowledge files.
-/// @param path  of the scenario.
+/// @param path   of the scenario.
+/// @param areas  that are defined elsewhere.
 /// @throws base::ConfigError for a knowledge file that cannot be read.
 std::vector<std::string> NamesThatDoNotFit(const Scenario& scenario, const std::string& path,
-                                           const std::string& task);
+                                           const std::string& task,
+                                           const std::vector<std::string>& areas = {});
 
 }  // namespace hires::sim_robot

@@ -242,8 +242,9 @@ double VirtualSecondsIn(const std::string& text) {
 }
 
 TEST_F(AchieveVerbTest, WhatIsOfVirtualTimeAloneIsRefusedWithoutIt) {
-  for (const std::string option : {"--scenario", "--config", "--seed", "--truth", "--threads",
-                                   "--world", "--robot", "--objects", "--domain", "--operators"}) {
+  for (const std::string option :
+       {"--scenario", "--config", "--seed", "--truth", "--threads", "--world", "--robot",
+        "--objects", "--domain", "--operators", "--map", "--area"}) {
     const Ended ended = Run({"serve guest1", option, "1"});
     EXPECT_EQ(ended.code, kExitNotAchieved) << option;
     EXPECT_THAT(ended.err, AllOf(HasSubstr(option), HasSubstr("--local")));
@@ -304,6 +305,44 @@ TEST_F(AchieveVerbTest, ARobotWithoutCameraInAWorldOfItsOwnDoesATaskOfItsOwn) {
                                     HasSubstr("config/domains/restaurant.lisp")));
   with_domain.insert(with_domain.end(), {"--operators", own + "knowledge.yaml"});
   EXPECT_THAT(Run(with_domain).err, HasSubstr("knowledge.yaml"));
+}
+
+TEST_F(AchieveVerbTest, ATaskIsDoneInAMapWithGoalsAsAreas) {
+  const std::string own = HIRES_SOURCE_DIR "/examples/own_robot/";
+  const std::string map = HIRES_SOURCE_DIR "/examples/your_files/";
+  const std::string store = (folder_.path() / "episode.db").string();
+  const std::vector<std::string> words{"--local",
+                                       "--imagination",
+                                       "off",
+                                       "--map",
+                                       map + "depot.yaml",
+                                       "--area",
+                                       map + "goals.yaml",
+                                       "--area",
+                                       "kitchenDoor:0.8,0.8,0",
+                                       "--scenario",
+                                       own + "scenario.yaml",
+                                       "--robot",
+                                       own + "courier.yaml",
+                                       "--objects",
+                                       own + "objects.yaml",
+                                       "--domain",
+                                       own + "delivery.lisp"};
+  auto there = words;
+  there.insert(there.end(), {"--store", store, "deliver", "soup1", "rack_2_front"});
+  const Ended ended = Run(there);
+  EXPECT_EQ(ended.code, kExitAchieved) << ended.err;
+  EXPECT_THAT(ended.out, AllOf(HasSubstr("deliver soup1 rack_2_front: succeeded"),
+                               HasSubstr("fallen: nothing")));
+  const Ended known = RunHires({"blackboard"}, {"query", "--class", "Area", "--store", store});
+  EXPECT_THAT(known.out, AllOf(HasSubstr("rack_2_front"), HasSubstr("behind_partition")));
+  EXPECT_THAT(known.out, HasSubstr("hasPose=poseKitchenDoor")) << "the knowledge file's";
+  auto nowhere = words;
+  nowhere.insert(nowhere.end(), {"deliver", "soup1", "rack_2_frnt"});
+  EXPECT_THAT(Run(nowhere).err, HasSubstr("did you mean 'rack_2_front'"));
+  auto both = words;
+  both.insert(both.end(), {"--world", own + "hall.world"});
+  EXPECT_THAT(Run(both).err, AllOf(HasSubstr("--map"), HasSubstr("--world")));
 }
 
 TEST_F(AchieveVerbTest, TheTaskMayBeOneWordOrSeveral) {

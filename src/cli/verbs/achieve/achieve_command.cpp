@@ -12,6 +12,7 @@
 #include <tuple>
 
 #include "cli/verbs/achieve/achieve_display.h"
+#include "cli/verbs/imagine/imagine_start.h"
 #include "cli/whole_number.h"
 #include "hires/base/error.h"
 #include "hires/base/process.h"
@@ -68,10 +69,13 @@ ReportOrigin OriginOf(const AchieveOptions& options, const std::string& package_
   origin.inputs = {{"scenario", ScenarioPath(options, package_folder)},
                    {"virtual time", LoopPath(options, package_folder)},
                    {"world", options.files.world},
+                   {"map", options.files.map},
                    {"robot", robot::FileOfRobot(options.files.robot)},
                    {"objects", options.files.objects},
                    {"domain", options.files.domain},
                    {"operators", options.files.operators}};
+  for (const std::string& file : AreaFilesOf(options.areas))
+    origin.inputs.push_back({"areas", file});
   origin.hashes = {{"files", reports::ConfigurationHash(package_folder)}};
   return origin;
 }
@@ -132,7 +136,9 @@ loop::LoopRun AchieveLocally(const AchieveOptions& options, const std::string& p
                              const loop::OnAchieveStatus& on_status,
                              const std::function<bool()>& cancelled,
                              loop::LoopRecording* recording) {
-  const loop::LoopSetup setup(LoopPath(options, package_folder), options.files);
+  loop::LoopFiles files = options.files;
+  files.areas = ReadAreas(options.areas);
+  const loop::LoopSetup setup(LoopPath(options, package_folder), files);
   loop::LoopOrder order;
   order.scenario = ScenarioPath(options, package_folder);
   order.task = base::Join(options.task, " ");
@@ -178,14 +184,19 @@ int ExitCodeFor(loop::AchieveOutcome outcome) {
   }
 }
 
-void AddFiles(CLI::App* verb, CLI::Option* local, loop::LoopFiles* files) {
+void AddFiles(CLI::App* verb, CLI::Option* local, AchieveOptions* achieve) {
+  loop::LoopFiles* files = &achieve->files;
   const std::tuple<const char*, std::string*, const char*> options[] = {
       {"--world", &files->world, "with --local: SDF file instead of the configuration's"},
+      {"--map", &files->map, "with --local: map_server map whose walls are the world"},
       {"--robot", &files->robot, "with --local: profile, URDF or xacro file, likewise"},
       {"--objects", &files->objects, "with --local: catalogue of objects, likewise"},
       {"--operators", &files->operators,
        "with --local: YAML beside the domain, likewise; default: that of its name"}};
   for (const auto& [name, file, what] : options) verb->add_option(name, *file, what)->needs(local);
+  verb->get_option("--map")->excludes(verb->get_option("--world"));
+  AddAreaOption(verb, &achieve->areas);
+  verb->get_option("--area")->needs(local);
 }
 
 /// How a task is played in one process.
@@ -248,7 +259,7 @@ void AddAchieveVerb(CLI::App* app, AchieveOptions* options) {
   verb->add_option("--scenario", options->scenario,
                    "with --local: file, or its name in config/scenarios; default: topple")
       ->needs(local);
-  AddFiles(verb, local, &options->files);
+  AddFiles(verb, local, options);
   verb->add_option(
           "--config", options->config,
           "with --local: file like config/loop.yaml, its default: what takes how long in "

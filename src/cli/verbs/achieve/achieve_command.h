@@ -33,6 +33,7 @@ struct AchieveOptions {
   bool is_list{false};  ///< says which tasks there are, and does none
   /// `domain` of the list: empty: the running monitor's, else the restaurant's.
   loop::LoopFiles files;
+  std::vector<std::string> areas;  ///< as typed: `is_local`
   bool is_dry_run{false};          ///< planned and imagined alone; `is_local`
   bool is_local{false};            ///< in this process and in virtual time, without any node
   std::string scenario{"topple"};  ///< where the robot and everything is then: file, or its name
