@@ -414,9 +414,17 @@ TEST(CommandLineTest, RefusesNumbersOutOfRange) {
   ExpectRefused(with("--ranking", "best"), {"did you mean one of 'cost', 'risk', 'thesis'?"});
 }
 
+TEST(CommandLineTest, NamesAllThatNothingHasAtOnceAndEachOnce) {
+  ExpectRefused(
+      Small().Imagine({"--action", "move_base", "--from", "Dor", "--arg", "Windw,Door,Pilar",
+                       "--object", "pepermill1"}),
+      {"the question: 4 things are wrong:", "area 'Dor' is unknown",
+       "object 'pepermill1' is unknown", "area 'windw' is unknown", "area 'pilar' is unknown"});
+}
+
 TEST(CommandLineTest, RefusesWhatTheWorldDoesNotKnow) {
   ExpectRefused(Small().Imagine({"--action", "move_base", "--from", "Dor", "--arg", "Window"}),
-                {"area 'Dor' is unknown", "'door'"});
+                {"area 'Dor' is unknown", "'Door'"});
   ExpectRefused(Small().Imagine({"--action", "move_base", "--from", "Door", "--arg", "Windw"}),
                 {"area 'windw' is unknown", "'window'"});
   ExpectRefused(Small().Imagine({"--action", "move_bas", "--from", "Door", "--arg", "Window"}),

@@ -10,7 +10,6 @@
 #include <iostream>
 #include <map>
 #include <nlohmann/json.hpp>
-#include <set>
 #include <thread>
 
 #include "cli/exit_code.h"
@@ -198,13 +197,7 @@ void PrintReport(const imagination::Report& report, imagination::RankingRule rul
 /// A name that nothing has, but whose kin the catalogue knows, is played as a model of that kind.
 void PrintKin(const ImagineQuery& query, QueryScene* scene) {
   const imagination::ImaginationSetup& setup = scene->setup();
-  std::set<std::string> objects(query.start.on_tray.begin(), query.start.on_tray.end());
-  for (const imagination::PutObject& put : query.start.put) objects.insert(put.object);
-  for (const base::Atom& atom : query.start.atoms) {
-    if (atom.predicate == "On") objects.insert(atom.arguments[0]);
-    if (atom.predicate == "Holding") objects.insert(atom.arguments[1]);
-  }
-  for (const std::string& object : objects) {
+  for (const std::string& object : query.start.Objects()) {
     const std::string model = setup.ModelOf(object);
     const bool is_named = setup.object_models.count(base::ToLower(object)) > 0 ||
                           base::ToLower(model) == base::ToLower(object);
@@ -309,7 +302,10 @@ int RunImagineVerb(const ImagineOptions& options, const ImagineBackends& backend
   QueryScene scene(query);
   const ReportOrigin origin = OriginOf(options, query, &scene);
   RefuseInputs(options.report, origin.inputs);
-  if (options.local) PrintKin(query, &scene);
+  if (options.local) {
+    RequireNames(query, &scene);
+    PrintKin(query, &scene);
+  }
   const imagination::Report report =
       options.local ? ImagineInThisProcess(query, &scene, on_interim, cancelled)
                     : backends.imagine_remotely(query, on_interim, cancelled);

@@ -132,6 +132,16 @@ std::vector<base::Atom> ImagineStart::AllAtoms() const {
   return all;
 }
 
+std::set<std::string> ImagineStart::Objects() const {
+  std::set<std::string> objects(on_tray.begin(), on_tray.end());
+  for (const imagination::PutObject& one : put) objects.insert(one.object);
+  for (const base::Atom& atom : atoms) {
+    if (atom.predicate == "On") objects.insert(atom.arguments[0]);
+    if (atom.predicate == "Holding") objects.insert(atom.arguments[1]);
+  }
+  return objects;
+}
+
 void RequireObjects(const actions::Catalogue& catalogue,
                     const std::vector<base::ActionCall>& actions, const world::WorldState& world) {
   for (const base::ActionCall& action : actions) {

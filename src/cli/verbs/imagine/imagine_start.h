@@ -1,5 +1,6 @@
 #pragma once
 
+#include <set>
 #include <string>
 #include <vector>
 
@@ -23,6 +24,7 @@ struct ImagineStart {
   std::vector<base::Atom> atoms;             ///< what else holds: Holding, postures, On
   std::vector<imagination::PutObject> put;   ///< objects at places given in numbers
   std::vector<base::Atom> AllAtoms() const;  ///< `atoms`, RobotAt, and On of the tray's load
+  std::set<std::string> Objects() const;     ///< that any of them names
 };
 
 /// What was typed of it.

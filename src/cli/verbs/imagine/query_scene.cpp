@@ -1,6 +1,14 @@
 #include "cli/verbs/imagine/query_scene.h"
 
+#include <algorithm>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "hires/base/error.h"
+#include "hires/base/short_text.h"
 #include "hires/imagination/local_imagination.h"
+#include "hires/skills/skill_factory.h"
 
 namespace hires::cli {
 
@@ -17,11 +25,31 @@ const imagination::RolloutSetup& QueryScene::rollouts() {
   return *rollouts_;
 }
 
+void RequireNames(const ImagineQuery& query, QueryScene* scene) {
+  const imagination::ImaginationSetup& setup = scene->setup();
+  std::vector<std::string> problems;
+  const auto check = [&](const std::function<void()>& use) {
+    try {
+      use();
+    } catch (const base::ConfigError& error) {
+      if (std::count(problems.begin(), problems.end(), error.what()) == 0)
+        problems.push_back(error.what());
+    }
+  };
+  check([&] { imagination::MakeStartState(setup, query.start.from, {}); });
+  for (const std::string& object : query.start.Objects()) {
+    if (setup.scene->world.initial.Find(object) == nullptr) check([&] { setup.ModelOf(object); });
+  }
+  for (const base::ActionCall& action : base::Combinations(query.action))
+    check([&] { skills::MakeSkill(*setup.skills, action); });
+  if (!problems.empty()) throw base::ConfigError(base::AllThatIsWrong("the question", problems));
+}
+
 imagination::Report ImagineInThisProcess(const ImagineQuery& query, QueryScene* scene,
                                          const imagination::OnInterim& on_interim,
                                          const std::function<bool()>& cancelled) {
-  const imagination::RolloutSetup& rollouts = scene->rollouts();
   const std::vector<base::ActionCall> actions = base::Combinations(query.action);
+  const imagination::RolloutSetup& rollouts = scene->rollouts();
   RequireObjects(rollouts.skills->actions->catalogue(), actions, rollouts.world_state);
   imagination::Report report = imagination::ImagineLocally(rollouts, actions, query.scheduler,
                                                            query.threads, on_interim, cancelled);

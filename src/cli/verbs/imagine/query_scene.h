@@ -24,6 +24,10 @@ class QueryScene {
   std::optional<imagination::RolloutSetup> rollouts_;
 };
 
+/// @throws base::ConfigError naming all that a query names and nothing has: areas, objects,
+/// arguments of the action.
+void RequireNames(const ImagineQuery& query, QueryScene* scene);
+
 /// Imagines in this process, as `hires imagine --local`.
 imagination::Report ImagineInThisProcess(const ImagineQuery& query, QueryScene* scene,
                                          const imagination::OnInterim& on_interim,
