@@ -16,7 +16,6 @@ namespace {
 
 using geometry::Pose2;
 
-constexpr double kNear = 0.5;       // [s]
 constexpr double kRelocated = 1.0;  // [m]
 constexpr int kOftenElsewhere = 5;
 constexpr double kMostElsewhere = 0.05;                                       // of the poses
@@ -28,19 +27,6 @@ constexpr double kAgreeingTurn = 0.5;                                         //
 constexpr double kWayOfTurn = 0.3;                                            // [m/rad]
 constexpr double kLongestPause = 5.0;                                         // [s] between scans
 
-std::optional<Pose2> OdometryOf(const RobotLog& log, const RobotLog::Scan& scan) {
-  if (scan.X_OB) return scan.X_OB;
-  const auto after = std::lower_bound(
-      log.odometry.begin(), log.odometry.end(), scan.time,
-      [](const RobotLog::Odometry& odometry, double t) { return odometry.time < t; });
-  const bool has_after = after != log.odometry.end(), has_before = after != log.odometry.begin();
-  if (has_after && after->time == scan.time) return after->reading.X_OB;
-  if (has_after && has_before) return OdometryBetween(*(after - 1), *after, scan.time);
-  if (has_after && after->time - scan.time <= kNear) return after->reading.X_OB;
-  if (has_before && scan.time - (after - 1)->time <= kNear) return (after - 1)->reading.X_OB;
-  return std::nullopt;
-}
-
 /// A scan's moment by the odometry alone, less its jumps.
 struct Moment {
   Pose2 X_OB;
@@ -49,18 +35,26 @@ struct Moment {
   bool is_in_path{false};
 };
 
-/// Whether what is believed at one moment agrees with what is believed at a later one.
-bool DoAgree(const Pose2& X_MB, const Moment& at, const Pose2& X_MLater, const Moment& later) {
-  const Pose2 off = (X_MLater * (later.X_OB.Inverse() * at.X_OB)).Inverse() * X_MB;
-  const double most = std::min(kAgreeing + kAgreeingOfWay * (later.way - at.way), kMostAgreeing);
-  return off.position().norm() <= most && std::abs(geometry::WrapToPi(off.yaw)) <= kAgreeingTurn;
+/// A pose of the path while it is judged.
+struct Judged {
+  Moment* moment;
+  TimedPose pose;
+};
+
+/// Whether what is believed at two moments agrees.
+bool DoAgree(const Judged& a, const Judged& b) {
+  const Pose2 step = b.moment->X_OB.Inverse() * a.moment->X_OB;
+  const Pose2 off = (b.pose.X_MB * step).Inverse() * a.pose.X_MB;
+  const double way = std::abs(b.moment->way - a.moment->way);
+  return off.position().norm() <= std::min(kAgreeing + kAgreeingOfWay * way, kMostAgreeing) &&
+         std::abs(geometry::WrapToPi(off.yaw)) <= kAgreeingTurn;
 }
 
 /// Whether the laser told something nearly all the way between two moments: after a pause the place
 /// is found anew, and that contradicts nobody.
-bool IsSeen(const Moment& at, const Moment& later) {
+bool IsSeen(const Moment& a, const Moment& b) {
   constexpr double kUnseen = 0.5;  // [m]
-  return (later.way - at.way) - (later.way_seen - at.way_seen) < kUnseen;
+  return std::abs(b.way - a.way) - std::abs(b.way_seen - a.way_seen) < kUnseen;
 }
 
 class LogLocaliser {
@@ -69,12 +63,12 @@ class LogLocaliser {
       : log_(log), filter_(std::move(filter)) {}
 
   void Take(const RobotLog::Scan& scan);
-  LocalisedLog Result();
+  LocalisedLog Result(JudgedFrom from);
 
  private:
   void TakeMoment(double time, const Pose2& X_OB, ScanOutcome outcome);
-  /// Leaves out of the path what its end contradicts.
-  void JudgePath();
+  /// Leaves out of the path what its end, or its beginning, contradicts.
+  void JudgePath(JudgedFrom from);
   double WayKnown() const;
   /// From the estimate before to that at `time`.
   void TakeEstimate(double time, ScanOutcome outcome, const Pose2& X_OB);
@@ -132,28 +126,30 @@ void LogLocaliser::TakeMoment(double time, const Pose2& X_OB, ScanOutcome outcom
   moments_.push_back(moment);
 }
 
-void LogLocaliser::JudgePath() {
-  TimedPath kept;
-  const Moment* later = nullptr;  // of the last one that was kept
-  bool is_kept = true;            // the one behind
-  const TimedPose* behind = nullptr;
-  const Moment* at_behind = nullptr;
-  std::size_t left = localised_.path.size();
-  for (auto at = moments_.rbegin(); at != moments_.rend(); ++at) {
-    if (!at->is_in_path) continue;
-    const TimedPose& pose = localised_.path[--left];
-    const bool is_leap =
-        behind && IsSeen(*at, *at_behind) && !DoAgree(pose.X_MB, *at, behind->X_MB, *at_behind);
-    if (is_leap) is_kept = DoAgree(pose.X_MB, *at, kept.back().X_MB, *later);
-    behind = &pose;
-    at_behind = &*at;
-    at->is_in_path = is_kept;
-    if (!is_kept) continue;
-    kept.push_back(pose);
-    later = at_behind;
+void LogLocaliser::JudgePath(JudgedFrom from) {
+  std::vector<Judged> poses;
+  std::size_t next = 0;
+  for (Moment& moment : moments_)
+    if (moment.is_in_path) poses.push_back({&moment, localised_.path[next++]});
+  if (from == JudgedFrom::kEnd) std::reverse(poses.begin(), poses.end());
+  const Judged *before = nullptr, *last_kept = nullptr;
+  bool is_kept = true;  // the one before
+  for (const Judged& pose : poses) {
+    if (before && IsSeen(*pose.moment, *before->moment) && !DoAgree(pose, *before))
+      is_kept = DoAgree(pose, *last_kept);
+    before = &pose;
+    pose.moment->is_in_path = is_kept;
+    if (is_kept) last_kept = &pose;
   }
-  localised_.num_contradicted = static_cast<int>(localised_.path.size() - kept.size());
-  std::reverse(kept.begin(), kept.end());
+  localised_.num_contradicted = 0;
+  TimedPath kept;
+  if (from == JudgedFrom::kEnd) std::reverse(poses.begin(), poses.end());
+  for (const Judged& pose : poses) {
+    if (pose.moment->is_in_path)
+      kept.push_back(pose.pose);
+    else
+      ++localised_.num_contradicted;
+  }
   localised_.path = std::move(kept);
 }
 
@@ -176,8 +172,9 @@ double LogLocaliser::WayKnown() const {
   return moments_.back().way_seen > 0.0 ? known / moments_.back().way_seen : 1.0;
 }
 
-LocalisedLog LogLocaliser::Result() {
-  JudgePath();
+LocalisedLog LogLocaliser::Result(JudgedFrom from) {
+  JudgePath(from);
+  if (!moments_.empty()) localised_.way = moments_.back().way_seen;
   localised_.way_known = WayKnown();
   if (num_judged_ > 0) localised_.explained /= num_judged_;
   if (num_judged_since_ > 0) localised_.explained_since /= num_judged_since_;
@@ -214,14 +211,14 @@ std::string WhyPartial(const LocalisedLog& localised) {
 }
 
 LocalisedLog LocaliseLog(const RobotLog& log, MonteCarloLocalisation filter,
-                         const std::string& task) {
+                         const std::string& task, std::size_t first_scan, JudgedFrom from) {
   LogLocaliser localiser(log, std::move(filter));
-  for (std::size_t i = 0; i < log.scans.size(); ++i) {
+  for (std::size_t i = first_scan; i < log.scans.size(); ++i) {
     localiser.Take(log.scans[i]);
     base::ReportProgress(task, static_cast<double>(i) / log.scans.size());
   }
   base::ReportProgress(task, 1.0);
-  return localiser.Result();
+  return localiser.Result(from);
 }
 
 }  // namespace hires::localisation

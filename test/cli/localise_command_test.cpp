@@ -146,11 +146,54 @@ TEST_F(LocaliseCommandTest, RobotThatMayBeAnywhereIsFound) {
   EXPECT_GT(after, 0.0);
   EXPECT_LT(after, 40.0);
   const TimedPath path = Trajectory();
-  EXPECT_NEAR(path.front().time - drive.truth.front().time, after, 1e-5);
+  EXPECT_EQ(path.size(), drive.truth.size()) << "also from before it was found";
   const Errors errors = ErrorsOf(path, drive.truth);
   EXPECT_LT(errors.rms, 0.15);
   EXPECT_LT(errors.worst, 1.0);
   EXPECT_LT(errors.last, 0.15);
+}
+
+world::OccupancyGrid Mirrored(world::OccupancyGrid grid) {
+  for (int row = 0; row < grid.height; ++row) {
+    const auto begin = grid.cells.begin() + static_cast<std::ptrdiff_t>(row) * grid.width;
+    std::reverse(begin, begin + grid.width);
+  }
+  return grid;
+}
+
+TEST_F(LocaliseCommandTest, AMirroredMapIsDoubtedForBeamsGoThroughItsObstacles) {
+  world::SaveMap(Mirrored(RoomsWithShelf()), Path("rooms.yaml"));
+  const std::string log = Log(Drive(3));
+  for (const std::vector<std::string>& start :
+       {std::vector<std::string>{}, std::vector<std::string>{"--initial", "10 2 1.5708"}}) {
+    const Ended ended = Localise(log, start);
+    EXPECT_EQ(ended.code, kExitUndecided) << ended.out;
+    EXPECT_THAT(ended.out, AllOf(HasSubstr("status      doubtful"),
+                                 HasSubstr("is probably not a map of where"),
+                                 HasSubstr("% of the beams go through its obstacles")));
+    EXPECT_FALSE(std::filesystem::exists(Path("path.tum")));
+  }
+}
+
+TEST_F(LocaliseCommandTest, WhereElseTheDriveFitsIsTold) {
+  world::OccupancyGrid empty = RoomsWithShelf();  // a hall like itself turned by half
+  for (int row = 2; row < empty.height - 2; ++row)
+    for (int column = 2; column < empty.width - 2; ++column)
+      empty.cells[row * empty.width + column] = world::Cell::kFree;
+  world::SaveMap(empty, Path("rooms.yaml"));
+  const SimulatedDrive drive =
+      test_support::DriveThrough(empty, test_support::CourseThroughTwoRooms(), {}, base::Rng(3));
+  const std::string log = Log(drive);
+  const Ended ended = Localise(log, {"--json", Path("answer.json")});
+  EXPECT_EQ(ended.code, kExitUndecided) << ended.out;
+  EXPECT_THAT(ended.out,
+              AllOf(HasSubstr("status      ambiguous"), HasSubstr("nearly as well elsewhere"),
+                    HasSubstr("say where it began with --initial; no trajectory is written")));
+  EXPECT_FALSE(std::filesystem::exists(Path("path.tum")));
+  const json told = json::parse(std::ifstream(Path("answer.json")));
+  EXPECT_NEAR(told["rival"]["pose"][0].get<double>() + told["pose"][0].get<double>(), 12.0, 0.3);
+  EXPECT_GE(told["rival"]["explained_here"], told["rival"]["explained"]);
+  EXPECT_EQ(Localise(log, at_start_).code, kExitRecommended) << "who is told where it began knows";
 }
 
 /// Free and occupied are taken for each other, and edges stay edges.

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <map>
 #include <optional>
 #include <string>
@@ -9,15 +10,29 @@
 
 namespace hires::localisation {
 
+/// Which poses of a path are believed where others contradict them.
+enum class JudgedFrom {
+  kEnd,   ///< the last ones: a filter finds out that it was wrong
+  kStart  ///< the first ones, as where it began is known
+};
+
+/// Another place in the map that explains a drive nearly as well.
+struct Rival {
+  geometry::Pose2 X_MB;        ///< where the robot was at the path's last scan, if it was there
+  double explained{0.0};       ///< share in [0, 1] of the beams of some scans, if it was there
+  double explained_here{0.0};  ///< of the same beams as the path says
+};
+
 /// How a log was localised.
 struct LocalisedLog {
   /// The robot at each scan from when it first knew where it was. Scans while it did not are left
   /// out, and so are poses that what it believed at last contradicts.
   TimedPath path;
   int num_contradicted{0};  ///< poses that were left out for that
-  double way_known{0.0};    ///< share in [0, 1] of the way that ends in poses of the path; what was
-                            ///< driven while the laser told nothing does not count
-  std::map<ScanOutcome, int> outcomes;         ///< how many scans became what
+  double way{0.0};  ///< [m] and, as 0.3 m each, radians, less what was driven while the laser told
+                    ///< nothing
+  double way_known{0.0};                ///< share in [0, 1] of it that ends in poses of the path
+  std::map<ScanOutcome, int> outcomes;  ///< how many scans became what
   std::map<LocalisationStatus, int> statuses;  ///< at the end of how many scans it was what
   int num_without_odometry{0};                 ///< scans that no odometry is near
   /// How often it first knew a place and then found the robot more than 1 m from there.
@@ -29,7 +44,14 @@ struct LocalisedLog {
   PoseEstimate last;                      ///< after the last scan
   std::optional<double> localised_after;  ///< [s] from the first scan; nothing: never
   std::optional<double> relocated_after;  ///< [s] the last time; nothing: never
+  std::optional<Rival> rival;             ///< what LocaliseAnywhere found besides
 };
+
+/// Of up to 200 scans of a path, the share of beams in [0, 1] that go through an obstacle of the
+/// map, 0.4 m (twice explained_distance) or more before their ends. What was put up since the map
+/// was made shortens beams, and lets none go through a wall.
+double ShareThroughObstacles(const RobotLog& log, const TimedPath& path,
+                             const world::OccupancyGrid& map, const MonteCarloParams& params);
 
 /// What speaks against the map being one of where the drive was: that the robot was found elsewhere
 /// again and again (5 times, and more than once in 20 poses), that most scans from the first pose
@@ -46,9 +68,24 @@ std::string WhyPartial(const LocalisedLog& localised);
 /// A filter that was wrong and finds out goes elsewhere at once, where the odometry did not go. The
 /// poses of the path are therefore judged from its end: what the last ones say, carried back by the
 /// odometry, is what those before such a leap must agree with (within 1 m and a tenth of the way
-/// between, 2 m at most, and 0.5 rad); those that do not are left out.
-/// @param task  what is done, for those who wait: "localising drive.log".
+/// between, 2 m at most, and 0.5 rad); those that do not are left out. Or from its start.
+/// @param task        what is done, for those who wait: "localising drive.log".
+/// @param first_scan  those before are passed over.  @pre less than the log's scans
 LocalisedLog LocaliseLog(const RobotLog& log, MonteCarloLocalisation filter,
-                         const std::string& task);
+                         const std::string& task, std::size_t first_scan = 0,
+                         JudgedFrom from = JudgedFrom::kEnd);
+
+/// The same for a robot that may begin anywhere on the map. A filter that once believes in a place
+/// stays there for as long as that explains enough: in a plan that is nearly the same turned by
+/// half, or from room to room, perhaps in the wrong one. So when the drive is over, what was driven
+/// before its first pose is played backwards from there, and all other places where echoes and way
+/// of the whole drive fit (FindOtherPlaces) are played likewise, forwards and backwards. Where the
+/// drive explains more beams is the answer; what does not explain significantly fewer (3 standard
+/// errors of the mean over scans) is its rival. A beam is explained that ends near an obstacle and
+/// passes none.
+/// @throws base::ConfigError as MonteCarloLocalisation does.
+LocalisedLog LocaliseAnywhere(const RobotLog& log, const world::OccupancyGrid& map,
+                              const MonteCarloParams& params, const base::Rng& rng,
+                              const std::string& task);
 
 }  // namespace hires::localisation

@@ -36,6 +36,10 @@ struct RobotLog {
 geometry::Pose2 OdometryBetween(const RobotLog::Odometry& before, const RobotLog::Odometry& after,
                                 double time);
 
+/// Odometry at a scan: as the log itself says it, else between the readings around it, or the
+/// nearest one within 0.5 s.
+std::optional<geometry::Pose2> OdometryOf(const RobotLog& log, const RobotLog::Scan& scan);
+
 /// A pose at a time [s].
 struct TimedPose {
   double time{0.0};

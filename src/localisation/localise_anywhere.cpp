@@ -1,0 +1,299 @@
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "hires/localisation/localise_log.h"
+#include "localisation/beams.h"
+#include "localisation/likelihood_field.h"
+#include "localisation/other_places.h"
+
+namespace hires::localisation {
+namespace {
+
+using Eigen::Vector2d;
+using geometry::Pose2;
+
+enum Streams : std::uint64_t { kWayThere = 1, kFromEnd, kOtherPlaces };
+constexpr int kMostPlayed = 4;              // other places
+constexpr std::size_t kMostSketched = 100;  // scans
+constexpr std::size_t kMostCompared = 200;  // scans
+constexpr double kSignificant = 3.0;        // standard errors
+constexpr std::size_t kFewScans = 10;       // whose spread tells nothing
+constexpr double kSamePath = 1.0;           // [m] at most, in the median
+constexpr double kClearOf = 2.0;  // explained distances before its end, what a beam passes
+
+/// A scan and where a path says that the base was.
+struct PlacedBeams {
+  double time;
+  Pose2 X_MB;
+  Beams beams;
+};
+
+BeamParams BeamParamsOf(const MonteCarloParams& params) {
+  return {params.laser_max_beams, params.laser_min_range, params.laser_max_range};
+}
+
+/// Up to `most` scans that have poses, evenly picked.
+std::vector<PlacedBeams> PlacedScans(const RobotLog& log, const TimedPath& path,
+                                     const MonteCarloParams& params, std::size_t most) {
+  std::vector<PlacedBeams> placed;
+  const std::size_t count = std::min(path.size(), most);
+  auto scan = log.scans.begin();
+  for (std::size_t k = 0; k < count; ++k) {
+    const TimedPose& pose = path[(2 * k + 1) * path.size() / (2 * count)];
+    scan = std::find_if(scan, log.scans.end(),
+                        [&](const RobotLog::Scan& s) { return s.time == pose.time; });
+    if (scan == log.scans.end()) break;
+    PlacedBeams beams{pose.time, pose.X_MB, {}};
+    if (!IsBad(SelectBeams(scan->reading, scan->X_BL, BeamParamsOf(params), &beams.beams)))
+      placed.push_back(std::move(beams));
+  }
+  return placed;
+}
+
+Vector2d EndOf(const Beams& beams, std::size_t k) { return {beams.x[k], beams.y[k]}; }
+
+DriveSketch SketchOf(const std::vector<PlacedBeams>& scans) {
+  DriveSketch sketch;
+  for (const PlacedBeams& scan : scans) {
+    sketch.way_M.push_back(scan.X_MB.position());
+    for (std::size_t k = 0; k < scan.beams.size(); ++k)
+      sketch.echoes_M.push_back(scan.X_MB * EndOf(scan.beams, k));
+  }
+  return sketch;
+}
+
+/// What a map says of single beams.
+class BeamJudge {
+ public:
+  BeamJudge(const world::OccupancyGrid& map, const MonteCarloParams& params)
+      : map_(map),
+        field_(map, params.laser_likelihood_max_dist),
+        explained_distance_(params.explained_distance) {}
+
+  /// Of a scan's beams, how many go through an obstacle.
+  int Through(const Beams& beams, const Pose2& X_MB) const {
+    int count = 0;
+    for (std::size_t k = 0; k < beams.size(); ++k)
+      count += PassesObstacle(X_MB.position(), X_MB * EndOf(beams, k));
+    return count;
+  }
+
+  /// Share of a scan's beams that end near an obstacle and pass none.
+  double Explained(const Beams& beams, const Pose2& X_MB) const {
+    int count = 0;
+    for (std::size_t k = 0; k < beams.size(); ++k) {
+      const Vector2d end = X_MB * EndOf(beams, k);
+      count += field_.DistanceAt(end.x(), end.y()) <= explained_distance_ &&
+               !PassesObstacle(X_MB.position(), end);
+    }
+    return count / static_cast<double>(beams.size());
+  }
+
+ private:
+  bool PassesObstacle(const Vector2d& from, const Vector2d& end) const {
+    const double length = (end - from).norm() - kClearOf * explained_distance_;
+    const Vector2d step = (end - from).normalized() * map_.resolution;
+    for (int i = 1; i * map_.resolution < length; ++i) {
+      const Vector2d at = (from + i * step - map_.origin) / map_.resolution;
+      const int column = static_cast<int>(std::floor(at.x()));
+      const int row = static_cast<int>(std::floor(at.y()));
+      if (column < 0 || row < 0 || column >= map_.width || row >= map_.height) continue;
+      if (map_.at(column, row) == world::Cell::kOccupied) return true;
+    }
+    return false;
+  }
+
+  const world::OccupancyGrid& map_;
+  LikelihoodField field_;
+  double explained_distance_;
+};
+
+const TimedPose* PoseAt(const TimedPath& path, double time) {
+  const auto at = std::lower_bound(path.begin(), path.end(), time,
+                                   [](const TimedPose& pose, double t) { return pose.time < t; });
+  return at != path.end() && at->time == time ? &*at : nullptr;
+}
+
+double Mean(const std::vector<double>& values) {
+  double sum = 0.0;
+  for (const double value : values) sum += value;
+  return values.empty() ? 0.0 : sum / static_cast<double>(values.size());
+}
+
+/// A way that the drive may have taken, and of each scan that is compared the share of its beams
+/// that is explained there.
+struct Candidate {
+  LocalisedLog localised;
+  std::vector<double> explained;
+};
+
+/// Whether one explains so many more beams than the other that chance is no reason.
+bool IsSignificantlyBetter(const Candidate& a, const Candidate& b) {
+  const std::size_t count = a.explained.size();
+  if (count < kFewScans) return false;
+  std::vector<double> more;
+  for (std::size_t i = 0; i < count; ++i) more.push_back(a.explained[i] - b.explained[i]);
+  const double mean = Mean(more);
+  double squares = 0.0;
+  for (const double value : more) squares += (value - mean) * (value - mean);
+  const double error = std::sqrt(squares / static_cast<double>((count - 1) * count));
+  return mean > kSignificant * error;
+}
+
+/// Whether both say much the same, wherever both say something.
+bool IsSameWay(const TimedPath& a, const TimedPath& b) {
+  std::vector<double> off;
+  for (const TimedPose& pose : a) {
+    if (const TimedPose* other = PoseAt(b, pose.time))
+      off.push_back((other->X_MB.position() - pose.X_MB.position()).norm());
+  }
+  if (off.empty()) return false;
+  const auto middle = off.begin() + static_cast<std::ptrdiff_t>(off.size() / 2);
+  std::nth_element(off.begin(), middle, off.end());
+  return *middle <= kSamePath;
+}
+
+std::size_t ScanOf(const RobotLog& log, double time) {
+  const auto at = std::find_if(log.scans.begin(), log.scans.end(),
+                               [&](const RobotLog::Scan& scan) { return scan.time == time; });
+  return static_cast<std::size_t>(at - log.scans.begin());
+}
+
+/// What was recorded until a scan, as if it were driven backwards.
+RobotLog Reversed(const RobotLog& log, std::size_t last_scan) {
+  RobotLog reversed;
+  for (std::size_t i = last_scan + 1; i-- > 0;) {
+    RobotLog::Scan scan = log.scans[i];
+    scan.X_OB = OdometryOf(log, scan);
+    if (!scan.X_OB) continue;
+    scan.time = -scan.time;
+    reversed.scans.push_back(std::move(scan));
+  }
+  return reversed;
+}
+
+/// Everything that plays a drive from a pose on the way.
+struct Drives {
+  const RobotLog& log;
+  const world::OccupancyGrid& map;
+  const MonteCarloParams& params;
+  const std::string task;
+
+  MonteCarloLocalisation At(const Pose2& X_MB, const base::Rng& rng) const {
+    MonteCarloParams there = params;
+    there.initial_pose = X_MB;
+    return MonteCarloLocalisation(map, there, rng);
+  }
+
+  /// Puts before the path how the robot came to its first pose.
+  /// @param way  [m] of the whole drive, as LocalisedLog::way.
+  void AddWayTo(const TimedPose& first, double way, const base::Rng& rng,
+                LocalisedLog* localised) const {
+    const std::size_t scan = ScanOf(log, first.time);
+    double known = localised->way_known * localised->way;
+    if (scan > 0) {
+      const LocalisedLog back = LocaliseLog(Reversed(log, scan), At(first.X_MB, rng),
+                                            task + ": the way there", 0, JudgedFrom::kStart);
+      TimedPath path;
+      for (auto pose = back.path.rbegin(); pose != back.path.rend(); ++pose)
+        if (-pose->time < first.time) path.push_back({-pose->time, pose->X_MB});
+      path.insert(path.end(), localised->path.begin(), localised->path.end());
+      localised->path = std::move(path);
+      known += back.way_known * back.way;
+    }
+    localised->way = way;
+    localised->way_known = way > 0.0 ? std::min(1.0, known / way) : localised->way_known;
+  }
+
+  /// Of a filter that hardly ever decided between places: as if its best one at the end were right.
+  std::optional<LocalisedLog> FromEnd(const PoseEstimate& last, const base::Rng& rng) const {
+    std::size_t end = log.scans.size() - 1;
+    while (end > 0 && !OdometryOf(log, log.scans[end])) --end;
+    const LocalisedLog back = LocaliseLog(Reversed(log, end), At(last.X_MB, rng.Fork(0)),
+                                          task + ": backwards", 0, JudgedFrom::kStart);
+    if (back.path.empty()) return std::nullopt;
+    const TimedPose start{-back.path.back().time, back.path.back().X_MB};
+    return LocaliseLog(log, At(start.X_MB, rng.Fork(1)), task + ": again", ScanOf(log, start.time),
+                       JudgedFrom::kStart);
+  }
+
+  /// As if the robot had been at `pose` at its time.
+  LocalisedLog Through(const TimedPose& pose, double way, const base::Rng& rng) const {
+    LocalisedLog localised = LocaliseLog(log, At(pose.X_MB, rng.Fork(0)), task + ": another place",
+                                         ScanOf(log, pose.time), JudgedFrom::kStart);
+    AddWayTo(pose, way, rng.Fork(1), &localised);
+    return localised;
+  }
+};
+
+}  // namespace
+
+double ShareThroughObstacles(const RobotLog& log, const TimedPath& path,
+                             const world::OccupancyGrid& map, const MonteCarloParams& params) {
+  const BeamJudge judge(map, params);
+  double through = 0.0, all = 0.0;
+  for (const PlacedBeams& scan : PlacedScans(log, path, params, kMostCompared)) {
+    through += judge.Through(scan.beams, scan.X_MB);
+    all += static_cast<double>(scan.beams.size());
+  }
+  return all > 0.0 ? through / all : 0.0;
+}
+
+LocalisedLog LocaliseAnywhere(const RobotLog& log, const world::OccupancyGrid& map,
+                              const MonteCarloParams& params, const base::Rng& rng,
+                              const std::string& task) {
+  MonteCarloLocalisation anywhere(map, params, rng);
+  anywhere.GlobalLocalisation();
+  Candidate best{LocaliseLog(log, std::move(anywhere), task), {}};
+  const Drives drives{log, map, params, task};
+  const double way = best.localised.way;
+  const auto is_useless = [](const LocalisedLog& localised) {
+    return localised.path.empty() || !WhyDoubtful(localised).empty();
+  };
+  if (best.localised.last.status == LocalisationStatus::kAmbiguous && is_useless(best.localised)) {
+    auto again = drives.FromEnd(best.localised.last, rng.Fork(kFromEnd));
+    if (again && !is_useless(*again)) best.localised = *std::move(again);
+  }
+  if (is_useless(best.localised)) return best.localised;
+  const TimedPose first = best.localised.path.front();
+  drives.AddWayTo(first, way, rng.Fork(kWayThere), &best.localised);
+  const TimedPath path = best.localised.path;
+  const std::vector<PlacedBeams> compared = PlacedScans(log, path, params, kMostCompared);
+  const BeamJudge judge(map, params);
+  const std::vector<Pose2> others =
+      FindOtherPlaces(map, SketchOf(PlacedScans(log, path, params, kMostSketched)),
+                      params.explained_distance, kMostPlayed, task + ": other places");
+  if (others.empty()) return best.localised;
+  const auto explain = [&](Candidate* candidate) {
+    for (const PlacedBeams& scan : compared) {
+      const TimedPose* pose = PoseAt(candidate->localised.path, scan.time);
+      candidate->explained.push_back(pose ? judge.Explained(scan.beams, pose->X_MB) : 0.0);
+    }
+  };
+  explain(&best);
+  std::vector<Candidate> behind;
+  for (std::size_t i = 0; i < others.size(); ++i) {
+    const TimedPose there{first.time, others[i] * first.X_MB};
+    Candidate other{drives.Through(there, way, rng.Fork(kOtherPlaces + i)), {}};
+    explain(&other);
+    if (Mean(other.explained) > Mean(best.explained)) std::swap(best, other);
+    behind.push_back(std::move(other));
+  }
+  for (const Candidate& other : behind) {
+    const TimedPath& other_way = other.localised.path;
+    const bool is_rival = !other_way.empty() && !IsSameWay(best.localised.path, other_way) &&
+                          !IsSignificantlyBetter(best, other);
+    const double explained = Mean(other.explained);
+    if (!is_rival || (best.localised.rival && best.localised.rival->explained >= explained))
+      continue;
+    best.localised.rival = Rival{other_way.back().X_MB, explained, Mean(best.explained)};
+  }
+  return best.localised;
+}
+
+}  // namespace hires::localisation

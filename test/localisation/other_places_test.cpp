@@ -1,0 +1,177 @@
+#include "localisation/other_places.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "hires/localisation/localise_log.h"
+#include "support/rounds.h"
+#include "support/simulated_drive.h"
+
+namespace hires::localisation::other_places_test {
+namespace {
+
+using Eigen::Vector2d;
+using geometry::Pose2;
+using test_support::SimulatedDrive;
+using world::OccupancyGrid;
+
+void Fill(int left, int lower, int right, int upper, OccupancyGrid* grid) {
+  for (int row = lower; row < upper; ++row)
+    for (int column = left; column < right; ++column)
+      grid->cells[static_cast<std::size_t>(row) * grid->width + column] = world::Cell::kOccupied;
+}
+
+/// 12 m x 8 m, two rooms with a door of 2 m between them and a pillar in each: the same when it is
+/// turned by half.
+OccupancyGrid SameTurnedByHalf() {
+  OccupancyGrid grid{0.05, 240, 160, {0.0, 0.0}, {}};
+  grid.cells.assign(static_cast<std::size_t>(grid.width) * grid.height, world::Cell::kFree);
+  Fill(0, 0, 240, 2, &grid);
+  Fill(0, 158, 240, 160, &grid);
+  Fill(0, 0, 2, 160, &grid);
+  Fill(238, 0, 240, 160, &grid);
+  Fill(118, 0, 122, 60, &grid);
+  Fill(118, 100, 122, 160, &grid);
+  Fill(180, 110, 190, 116, &grid);
+  Fill(50, 44, 60, 50, &grid);
+  return grid;
+}
+
+/// With a cupboard in a corner of the right room.
+OccupancyGrid NearlySameTurnedByHalf() {
+  OccupancyGrid grid = SameTurnedByHalf();
+  Fill(220, 2, 238, 30, &grid);
+  return grid;
+}
+
+SimulatedDrive DriveIn(const OccupancyGrid& grid, int seed) {
+  const std::vector<Vector2d> course{{2.0, 2.0},  {2.0, 4.0}, {8.0, 4.0}, {8.0, 2.5},
+                                     {10.0, 4.0}, {8.0, 4.0}, {4.0, 4.0}, {3.5, 6.5}};
+  return test_support::DriveThrough(grid, course, {}, base::Rng(seed));
+}
+
+Pose2 TurnedByHalf(const Pose2& X_MB) { return Pose2{12.0, 8.0, geometry::kPi} * X_MB; }
+
+double Off(const Pose2& X_MB, const Pose2& truth) {
+  return (X_MB.position() - truth.position()).norm();
+}
+
+LocalisedLog Localise(const SimulatedDrive& drive, const OccupancyGrid& map, int seed,
+                      const MonteCarloParams& params = {}) {
+  return LocaliseAnywhere(drive.log, map, params, base::Rng(seed), "localising");
+}
+
+LocalisedLog LocaliseByFilterAlone(const SimulatedDrive& drive, const OccupancyGrid& map, int seed,
+                                   const MonteCarloParams& params = {}) {
+  MonteCarloLocalisation filter(map, params, base::Rng(seed));
+  filter.GlobalLocalisation();
+  return LocaliseLog(drive.log, filter, "localising");
+}
+
+DriveSketch SketchOf(const SimulatedDrive& drive) {
+  DriveSketch sketch;
+  for (std::size_t i = 0; i < drive.log.scans.size(); i += 10) {
+    const RobotLog::Scan& scan = drive.log.scans[i];
+    sketch.way_M.push_back(drive.truth[i].X_MB.position());
+    for (std::size_t k = 0; k < scan.reading.ranges.size(); k += 5) {
+      const double angle = scan.reading.angle_min + k * scan.reading.angle_increment;
+      const Vector2d end_L = scan.reading.ranges[k] * Vector2d(std::cos(angle), std::sin(angle));
+      sketch.echoes_M.push_back(drive.truth[i].X_MB * (scan.X_BL * end_L));
+    }
+  }
+  return sketch;
+}
+
+TEST(OtherPlacesTest, ThePlanTurnedByHalfIsFoundAndNothingElse) {
+  const OccupancyGrid map = SameTurnedByHalf();
+  const SimulatedDrive drive = DriveIn(map, 1);
+  const std::vector<Pose2> places = FindOtherPlaces(map, SketchOf(drive), 0.2, 4, "looking");
+  ASSERT_EQ(places.size(), 1u);
+  for (const TimedPose& truth : drive.truth)
+    EXPECT_LT(Off(places[0] * truth.X_MB, TurnedByHalf(truth.X_MB)), 0.25);
+}
+
+TEST(OtherPlacesTest, AFarMapIsSearchedWhereItLies) {
+  OccupancyGrid map = SameTurnedByHalf();
+  const Vector2d far(-310.0, 77.5);
+  DriveSketch sketch = SketchOf(DriveIn(map, 1));
+  map.origin = far;
+  for (Vector2d& p : sketch.echoes_M) p += far;
+  for (Vector2d& p : sketch.way_M) p += far;
+  const std::vector<Pose2> places = FindOtherPlaces(map, sketch, 0.2, 4, "looking");
+  ASSERT_EQ(places.size(), 1u);
+  const Vector2d end = places[0] * sketch.way_M.front();
+  EXPECT_LT((end - far - Vector2d(10.0, 6.0)).norm(), 0.25);
+}
+
+TEST(OtherPlacesTest, APlanLikeNoTurnOfItselfHasNone) {
+  const OccupancyGrid map = test_support::RoomsWithShelf();
+  const SimulatedDrive drive =
+      test_support::DriveThrough(map, test_support::CourseThroughTwoRooms(), {}, base::Rng(2));
+  EXPECT_TRUE(FindOtherPlaces(map, SketchOf(drive), 0.2, 4, "looking").empty());
+}
+
+TEST(OtherPlacesTest, ASketchOfNothingHasNone) {
+  EXPECT_TRUE(FindOtherPlaces(SameTurnedByHalf(), {}, 0.2, 4, "looking").empty());
+}
+
+TEST(LocaliseAnywhereTest, APlanThatIsTheSameTurnedByHalfHasARival) {
+  const OccupancyGrid map = SameTurnedByHalf();
+  for (int seed = 1; seed <= test_support::Rounds(4); ++seed) {
+    SCOPED_TRACE(seed);
+    const SimulatedDrive drive = DriveIn(map, seed);
+    const LocalisedLog localised = Localise(drive, map, seed);
+    ASSERT_TRUE(localised.rival.has_value());
+    EXPECT_LT(Off(localised.rival->X_MB, TurnedByHalf(localised.path.back().X_MB)), 0.3);
+    EXPECT_GE(localised.rival->explained_here, localised.rival->explained);
+    EXPECT_GT(localised.rival->explained, 0.9);
+  }
+}
+
+TEST(LocaliseAnywhereTest, OneCupboardTellsTheHalvesApart) {
+  const OccupancyGrid map = NearlySameTurnedByHalf();
+  MonteCarloParams few;  // particles: the filter alone takes the half that it came upon first
+  few.min_particles = 100;
+  few.max_particles = 500;
+  few.global_particles = 3000;
+  int num_wrong_alone = 0;
+  for (int seed = 1; seed <= test_support::Rounds(32); ++seed) {
+    SCOPED_TRACE(seed);
+    const SimulatedDrive drive = DriveIn(map, seed);
+    const Pose2& truth = drive.truth.back().X_MB;
+    num_wrong_alone += Off(LocaliseByFilterAlone(drive, map, seed, few).last.X_MB, truth) > 1.0;
+    const LocalisedLog localised = Localise(drive, map, seed, few);
+    EXPECT_FALSE(localised.rival.has_value());
+    EXPECT_EQ(localised.last.status, LocalisationStatus::kGood);
+    ASSERT_FALSE(localised.path.empty());
+    EXPECT_LT(Off(localised.path.back().X_MB, truth), 0.3);
+  }
+  EXPECT_GT(num_wrong_alone, 0) << "nothing was tested";
+}
+
+TEST(LocaliseAnywhereTest, WhereNothingElseFitsTheFiltersWordStaysAndTheWayThereIsAdded) {
+  const OccupancyGrid map = test_support::RoomsWithShelf();
+  const SimulatedDrive drive =
+      test_support::DriveThrough(map, test_support::CourseThroughTwoRooms(), {}, base::Rng(2));
+  const TimedPath alone = LocaliseByFilterAlone(drive, map, 5).path;
+  const LocalisedLog all = Localise(drive, map, 5);
+  ASSERT_FALSE(alone.empty());
+  EXPECT_FALSE(all.rival.has_value());
+  ASSERT_EQ(all.path.size(), drive.truth.size());
+  const std::size_t more = all.path.size() - alone.size();
+  EXPECT_GT(more, 0u) << "nothing was tested";
+  for (std::size_t i = 0; i < alone.size(); ++i) {
+    EXPECT_EQ(all.path[more + i].X_MB.x, alone[i].X_MB.x);
+    EXPECT_EQ(all.path[more + i].X_MB.yaw, alone[i].X_MB.yaw);
+  }
+  for (std::size_t i = 0; i < all.path.size(); ++i) {
+    EXPECT_EQ(all.path[i].time, drive.truth[i].time);
+    EXPECT_LT(Off(all.path[i].X_MB, drive.truth[i].X_MB), 0.3);
+  }
+  EXPECT_GT(all.way_known, 0.99);
+}
+
+}  // namespace
+}  // namespace hires::localisation::other_places_test
