@@ -110,6 +110,8 @@ class ExecutionMonitorTest(unittest.TestCase):
     def test_coffee_is_served_beside_what_imagination_found_to_fail(self):
         self.system.put_wish()
         self.system.behave('imagine', answer='all_failed')
+        # Under way until it is told to stop: or it might be there before the answers are.
+        self.system.behave('move_base', hang=True)
         result = self.achieve(SERVE).result()
         # Every place fails in imagination: no way is left, and nothing was put anywhere.
         self.assertEqual(result.code, self.codes.NO_PLAN, result.reason)
