@@ -202,6 +202,8 @@ struct Drives {
       TimedPath path;
       for (auto pose = back.path.rbegin(); pose != back.path.rend(); ++pose)
         if (-pose->time < first.time) path.push_back({-pose->time, pose->X_MB});
+      const int num_added = static_cast<int>(path.size());
+      localised->num_contradicted = std::max(0, localised->num_contradicted - num_added);
       path.insert(path.end(), localised->path.begin(), localised->path.end());
       localised->path = std::move(path);
       known += back.way_known * back.way;

@@ -28,7 +28,7 @@ struct LocalisedLog {
   /// The robot at each scan from when it first knew where it was. Scans while it did not are left
   /// out, and so are poses that what it believed at last contradicts.
   TimedPath path;
-  int num_contradicted{0};  ///< poses that were left out for that
+  int num_contradicted{0};  ///< poses that were left out for that, and have no others instead
   double way{0.0};  ///< [m] and, as 0.3 m each, radians, less what was driven while the laser told
                     ///< nothing
   double way_known{0.0};                ///< share in [0, 1] of it that ends in poses of the path
