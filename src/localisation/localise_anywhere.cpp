@@ -67,7 +67,22 @@ DriveSketch SketchOf(const std::vector<PlacedBeams>& scans) {
   return sketch;
 }
 
-/// What a map says of single beams.
+/// Whether a beam goes through an obstacle of the map well before its end.
+bool PassesObstacle(const world::OccupancyGrid& map, const Vector2d& from, const Vector2d& end,
+                    double explained_distance) {
+  const double length = (end - from).norm() - kClearOf * explained_distance;
+  const Vector2d step = (end - from).normalized() * map.resolution;
+  for (int i = 1; i * map.resolution < length; ++i) {
+    const Vector2d at = (from + i * step - map.origin) / map.resolution;
+    const int column = static_cast<int>(std::floor(at.x()));
+    const int row = static_cast<int>(std::floor(at.y()));
+    if (column < 0 || row < 0 || column >= map.width || row >= map.height) continue;
+    if (map.at(column, row) == world::Cell::kOccupied) return true;
+  }
+  return false;
+}
+
+/// Tells which share of a scan's beams ends near an obstacle and passes none.
 class BeamJudge {
  public:
   BeamJudge(const world::OccupancyGrid& map, const MonteCarloParams& params)
@@ -75,39 +90,17 @@ class BeamJudge {
         field_(map, params.laser_likelihood_max_dist),
         explained_distance_(params.explained_distance) {}
 
-  /// Of a scan's beams, how many go through an obstacle.
-  int Through(const Beams& beams, const Pose2& X_MB) const {
-    int count = 0;
-    for (std::size_t k = 0; k < beams.size(); ++k)
-      count += PassesObstacle(X_MB.position(), X_MB * EndOf(beams, k));
-    return count;
-  }
-
-  /// Share of a scan's beams that end near an obstacle and pass none.
   double Explained(const Beams& beams, const Pose2& X_MB) const {
     int count = 0;
     for (std::size_t k = 0; k < beams.size(); ++k) {
       const Vector2d end = X_MB * EndOf(beams, k);
       count += field_.DistanceAt(end.x(), end.y()) <= explained_distance_ &&
-               !PassesObstacle(X_MB.position(), end);
+               !PassesObstacle(map_, X_MB.position(), end, explained_distance_);
     }
     return count / static_cast<double>(beams.size());
   }
 
  private:
-  bool PassesObstacle(const Vector2d& from, const Vector2d& end) const {
-    const double length = (end - from).norm() - kClearOf * explained_distance_;
-    const Vector2d step = (end - from).normalized() * map_.resolution;
-    for (int i = 1; i * map_.resolution < length; ++i) {
-      const Vector2d at = (from + i * step - map_.origin) / map_.resolution;
-      const int column = static_cast<int>(std::floor(at.x()));
-      const int row = static_cast<int>(std::floor(at.y()));
-      if (column < 0 || row < 0 || column >= map_.width || row >= map_.height) continue;
-      if (map_.at(column, row) == world::Cell::kOccupied) return true;
-    }
-    return false;
-  }
-
   const world::OccupancyGrid& map_;
   LikelihoodField field_;
   double explained_distance_;
@@ -180,14 +173,21 @@ RobotLog Reversed(const RobotLog& log, std::size_t last_scan) {
 /// Everything that plays a drive from a pose on the way.
 struct Drives {
   const RobotLog& log;
-  const world::OccupancyGrid& map;
-  const MonteCarloParams& params;
+  const MonteCarloLocalisation& filter;  // that has heard nothing; its copies share the map
+  const Eigen::Vector3d& initial_variance;
   const std::string task;
 
   MonteCarloLocalisation At(const Pose2& X_MB, const base::Rng& rng) const {
-    MonteCarloParams there = params;
-    there.initial_pose = X_MB;
-    return MonteCarloLocalisation(map, there, rng);
+    MonteCarloLocalisation there = filter;
+    there.Reseed(rng);
+    there.SetPose(X_MB, initial_variance.asDiagonal());
+    return there;
+  }
+
+  /// The drive until a scan, backwards from where the robot was then; its times are negative.
+  LocalisedLog Back(std::size_t scan, const Pose2& X_MB, const base::Rng& rng) const {
+    return LocaliseLog(Reversed(log, scan), At(X_MB, rng), task + ": backwards", 0,
+                       JudgedFrom::kStart);
   }
 
   /// Puts before the path how the robot came to its first pose.
@@ -197,8 +197,7 @@ struct Drives {
     const std::size_t scan = ScanOf(log, first.time);
     double known = localised->way_known * localised->way;
     if (scan > 0) {
-      const LocalisedLog back = LocaliseLog(Reversed(log, scan), At(first.X_MB, rng),
-                                            task + ": the way there", 0, JudgedFrom::kStart);
+      const LocalisedLog back = Back(scan, first.X_MB, rng);
       TimedPath path;
       for (auto pose = back.path.rbegin(); pose != back.path.rend(); ++pose)
         if (-pose->time < first.time) path.push_back({-pose->time, pose->X_MB});
@@ -216,8 +215,7 @@ struct Drives {
   std::optional<LocalisedLog> FromEnd(const PoseEstimate& last, const base::Rng& rng) const {
     std::size_t end = log.scans.size() - 1;
     while (end > 0 && !OdometryOf(log, log.scans[end])) --end;
-    const LocalisedLog back = LocaliseLog(Reversed(log, end), At(last.X_MB, rng.Fork(0)),
-                                          task + ": backwards", 0, JudgedFrom::kStart);
+    const LocalisedLog back = Back(end, last.X_MB, rng.Fork(0));
     if (back.path.empty()) return std::nullopt;
     const TimedPose start{-back.path.back().time, back.path.back().X_MB};
     return LocaliseLog(log, At(start.X_MB, rng.Fork(1)), task + ": again", ScanOf(log, start.time),
@@ -237,10 +235,11 @@ struct Drives {
 
 double ShareThroughObstacles(const RobotLog& log, const TimedPath& path,
                              const world::OccupancyGrid& map, const MonteCarloParams& params) {
-  const BeamJudge judge(map, params);
   double through = 0.0, all = 0.0;
   for (const PlacedBeams& scan : PlacedScans(log, path, params, kMostCompared)) {
-    through += judge.Through(scan.beams, scan.X_MB);
+    for (std::size_t k = 0; k < scan.beams.size(); ++k)
+      through += PassesObstacle(map, scan.X_MB.position(), scan.X_MB * EndOf(scan.beams, k),
+                                params.explained_distance);
     all += static_cast<double>(scan.beams.size());
   }
   return all > 0.0 ? through / all : 0.0;
@@ -249,10 +248,11 @@ double ShareThroughObstacles(const RobotLog& log, const TimedPath& path,
 LocalisedLog LocaliseAnywhere(const RobotLog& log, const world::OccupancyGrid& map,
                               const MonteCarloParams& params, const base::Rng& rng,
                               const std::string& task) {
-  MonteCarloLocalisation anywhere(map, params, rng);
+  const MonteCarloLocalisation filter(map, params, rng);
+  MonteCarloLocalisation anywhere = filter;
   anywhere.GlobalLocalisation();
   Candidate best{LocaliseLog(log, std::move(anywhere), task), {}};
-  const Drives drives{log, map, params, task};
+  const Drives drives{log, filter, params.initial_variance, task};
   const double way = best.localised.way;
   const auto is_useless = [](const LocalisedLog& localised) {
     return localised.path.empty() || !WhyDoubtful(localised).empty();
@@ -264,13 +264,13 @@ LocalisedLog LocaliseAnywhere(const RobotLog& log, const world::OccupancyGrid& m
   if (is_useless(best.localised)) return best.localised;
   const TimedPose first = best.localised.path.front();
   drives.AddWayTo(first, way, rng.Fork(kWayThere), &best.localised);
-  const TimedPath path = best.localised.path;
-  const std::vector<PlacedBeams> compared = PlacedScans(log, path, params, kMostCompared);
-  const BeamJudge judge(map, params);
   const std::vector<Pose2> others =
-      FindOtherPlaces(map, SketchOf(PlacedScans(log, path, params, kMostSketched)),
+      FindOtherPlaces(map, SketchOf(PlacedScans(log, best.localised.path, params, kMostSketched)),
                       params.explained_distance, kMostPlayed, task + ": other places");
   if (others.empty()) return best.localised;
+  const std::vector<PlacedBeams> compared =
+      PlacedScans(log, best.localised.path, params, kMostCompared);
+  const BeamJudge judge(map, params);
   const auto explain = [&](Candidate* candidate) {
     for (const PlacedBeams& scan : compared) {
       const TimedPose* pose = PoseAt(candidate->localised.path, scan.time);
