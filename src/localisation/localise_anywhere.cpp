@@ -30,6 +30,7 @@ constexpr double kClearOf = 2.0;  // explained distances before its end, what a 
 struct PlacedBeams {
   double time;
   Pose2 X_MB;
+  Vector2d laser_B;  // [m]
   Beams beams;
 };
 
@@ -48,7 +49,7 @@ std::vector<PlacedBeams> PlacedScans(const RobotLog& log, const TimedPath& path,
     scan = std::find_if(scan, log.scans.end(),
                         [&](const RobotLog::Scan& s) { return s.time == pose.time; });
     if (scan == log.scans.end()) break;
-    PlacedBeams beams{pose.time, pose.X_MB, {}};
+    PlacedBeams beams{pose.time, pose.X_MB, scan->X_BL.position(), {}};
     if (!IsBad(SelectBeams(scan->reading, scan->X_BL, BeamParamsOf(params), &beams.beams)))
       placed.push_back(std::move(beams));
   }
@@ -67,12 +68,12 @@ DriveSketch SketchOf(const std::vector<PlacedBeams>& scans) {
   return sketch;
 }
 
-/// Whether a beam goes through an obstacle of the map well before its end.
-bool PassesObstacle(const world::OccupancyGrid& map, const Vector2d& from, const Vector2d& end,
-                    double explained_distance) {
-  const double length = (end - from).norm() - kClearOf * explained_distance;
-  const Vector2d step = (end - from).normalized() * map.resolution;
-  for (int i = 1; i * map.resolution < length; ++i) {
+/// Whether an obstacle of the map lies on the first `length` [m] of the way from a point to another,
+/// the point itself included.
+bool IsObstacleBetween(const world::OccupancyGrid& map, const Vector2d& from, const Vector2d& to,
+                       double length) {
+  const Vector2d step = (to - from).normalized() * map.resolution;
+  for (int i = 0; i * map.resolution < length; ++i) {
     const Vector2d at = (from + i * step - map.origin) / map.resolution;
     const int column = static_cast<int>(std::floor(at.x()));
     const int row = static_cast<int>(std::floor(at.y()));
@@ -80,6 +81,16 @@ bool PassesObstacle(const world::OccupancyGrid& map, const Vector2d& from, const
     if (map.at(column, row) == world::Cell::kOccupied) return true;
   }
   return false;
+}
+
+/// Whether a beam goes through an obstacle of the map well before its end, or its laser is behind
+/// one: no robot stands in walls.
+bool PassesObstacle(const world::OccupancyGrid& map, const Pose2& X_MB, const Vector2d& laser_B,
+                    const Vector2d& end_M, double explained_distance) {
+  const Vector2d base_M = X_MB.position(), laser_M = X_MB * laser_B;
+  const double beam = (end_M - laser_M).norm() - kClearOf * explained_distance;
+  return IsObstacleBetween(map, base_M, laser_M, laser_B.norm()) ||
+         IsObstacleBetween(map, laser_M, end_M, beam);
 }
 
 /// Tells which share of a scan's beams ends near an obstacle and passes none.
@@ -90,12 +101,13 @@ class BeamJudge {
         field_(map, params.laser_likelihood_max_dist),
         explained_distance_(params.explained_distance) {}
 
-  double Explained(const Beams& beams, const Pose2& X_MB) const {
+  double Explained(const PlacedBeams& scan, const Pose2& X_MB) const {
+    const Beams& beams = scan.beams;
     int count = 0;
     for (std::size_t k = 0; k < beams.size(); ++k) {
       const Vector2d end = X_MB * EndOf(beams, k);
       count += field_.DistanceAt(end.x(), end.y()) <= explained_distance_ &&
-               !PassesObstacle(map_, X_MB.position(), end, explained_distance_);
+               !PassesObstacle(map_, X_MB, scan.laser_B, end, explained_distance_);
     }
     return count / static_cast<double>(beams.size());
   }
@@ -238,7 +250,7 @@ double ShareThroughObstacles(const RobotLog& log, const TimedPath& path,
   double through = 0.0, all = 0.0;
   for (const PlacedBeams& scan : PlacedScans(log, path, params, kMostCompared)) {
     for (std::size_t k = 0; k < scan.beams.size(); ++k)
-      through += PassesObstacle(map, scan.X_MB.position(), scan.X_MB * EndOf(scan.beams, k),
+      through += PassesObstacle(map, scan.X_MB, scan.laser_B, scan.X_MB * EndOf(scan.beams, k),
                                 params.explained_distance);
     all += static_cast<double>(scan.beams.size());
   }
@@ -274,7 +286,7 @@ LocalisedLog LocaliseAnywhere(const RobotLog& log, const world::OccupancyGrid& m
   const auto explain = [&](Candidate* candidate) {
     for (const PlacedBeams& scan : compared) {
       const TimedPose* pose = PoseAt(candidate->localised.path, scan.time);
-      candidate->explained.push_back(pose ? judge.Explained(scan.beams, pose->X_MB) : 0.0);
+      candidate->explained.push_back(pose ? judge.Explained(scan, pose->X_MB) : 0.0);
     }
   };
   explain(&best);

@@ -48,8 +48,9 @@ struct LocalisedLog {
 };
 
 /// Of up to 200 scans of a path, the share of beams in [0, 1] that go through an obstacle of the
-/// map, 0.4 m (twice explained_distance) or more before their ends. What was put up since the map
-/// was made shortens beams, and lets none go through a wall.
+/// map, 0.4 m (twice explained_distance) or more before their ends, or from a laser that the base's
+/// middle has an obstacle before. What was put up since the map was made shortens beams, and lets
+/// none go through a wall.
 double ShareThroughObstacles(const RobotLog& log, const TimedPath& path,
                              const world::OccupancyGrid& map, const MonteCarloParams& params);
 
