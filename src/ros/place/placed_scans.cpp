@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <utility>
 
 #include "hires/localisation/laser_mount.h"
@@ -56,11 +57,15 @@ void PlacedScans::Add(const sensor_msgs::LaserScanConstPtr& scan) {
 
 std::string PlacedScans::WhyUntimely(const ros::Time& stamp) const {
   const double age = (ros::Time::now() - stamp).toSec();
-  if (age < -limits_.max_ahead) {
-    return fmt::format(
-        "its stamp lies {:.1f} s in the future, wanted {:g} at most; synchronise the clocks of the "
-        "computers",
-        -age, limits_.max_ahead);
+  // There is one clock in simulated time: a scan ahead of it came before the message on /clock.
+  const bool is_simulated = ros::Time::isSimTime();
+  const double max_ahead =
+      is_simulated ? std::max(limits_.max_ahead, limits_.max_age) : limits_.max_ahead;
+  if (age < -max_ahead) {
+    return fmt::format("its stamp lies {:.1f} s in the future, wanted {:g} at most; {}", -age,
+                       max_ahead,
+                       is_simulated ? "let what gives the time on /clock give the scans as well"
+                                    : "synchronise the clocks of the computers");
   }
   if (age <= limits_.max_age) return "";
   if (waits_for_.empty()) {
