@@ -217,7 +217,6 @@ DwaResult DwaPlanner::Impl::Update(const Costmap& costmap, const geometry::Pose2
     approach_.BeginTo(X_MGoal_);
     if (const auto result = CloseIn(costmap, X_MB, V_B)) return *result;
   }
-  if (CanMoveSideways()) return Drive(costmap, X_MB, V_B);
   if (const auto result = Manoeuvre(costmap, X_MB, V_B)) return *result;
   const DwaResult result = Drive(costmap, X_MB, V_B);
   if (result.status != DwaStatus::kNoValidTrajectory) return result;

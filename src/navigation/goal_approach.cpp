@@ -182,11 +182,19 @@ Twist2 GoalApproach::Turn(const Pose2& X_MB, const Twist2& V_B) const {
 /// [rad] Back onto its line, where that is longer than a few steps: as a base turned, its believed
 /// place moved by some cm.
 double GoalApproach::HeadingTowards(const Vector2d& p_MB, double left) const {
-  if (!has_pieces_) return yaw_;
+  if (!has_pieces_ || CanMoveSideways()) return yaw_;
   const Vector2d to_left(-std::sin(yaw_), std::cos(yaw_));
   const double beside = to_left.dot(p_MTo_ - p_MB);
   const double turned = std::clamp(beside / kBackOnLine, -kMostTowards, kMostTowards);
   return yaw_ + (left < 0.0 ? -turned : turned);
+}
+
+/// [m/s] It creeps to its goal; pieces are driven as fast as a base may go sideways.
+double GoalApproach::MostTowards(const Vector2d& way_B) const {
+  if (!CanMoveSideways()) return kSpeed;
+  const double sideways = params_.max_lateral_velocity;
+  if (!has_pieces_) return std::min(kSpeed, sideways);
+  return std::min(kSpeed, sideways * way_B.norm() / std::max(std::abs(way_B.y()), 1e-9));
 }
 
 /// None: it is there.
@@ -201,9 +209,8 @@ std::optional<Twist2> GoalApproach::Drive(const Pose2& X_MB, const Twist2& V_B) 
   if (left <= kReached) return std::nullopt;
   const double deceleration =
       std::min(kDeceleration, kBrakingShare * limits_.max_linear_acceleration);
-  const double most = CanMoveSideways() ? std::min(kSpeed, params_.max_lateral_velocity) : kSpeed;
-  const double speed =
-      std::min({ApproachSpeed(left, deceleration, kReaction), most, limits_.max_linear_velocity});
+  const double speed = std::min({ApproachSpeed(left, deceleration, kReaction), MostTowards(wanted),
+                                 limits_.max_linear_velocity});
   const double heading = HeadingTowards(X_MB.position(), wanted.x());
   wanted *= speed / left;
   const double change = limits_.max_linear_acceleration * params_.control_period;
@@ -222,7 +229,7 @@ GoalApproach::Step GoalApproach::Update(const Costmap& costmap, const Pose2& X_M
       End();
       return {State::kBlocked, {}};
     }
-    stage_ = CanMoveSideways() ? Stage::kDriving : Stage::kTurning;
+    stage_ = CanMoveSideways() && !has_pieces_ ? Stage::kDriving : Stage::kTurning;
   }
   if (stage_ == Stage::kTurning) {
     if (std::abs(TurnLeft(X_MB.yaw)) <= kAimed) {

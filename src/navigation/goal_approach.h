@@ -62,18 +62,19 @@ double TurnBegun(double angle, int sign);
 std::optional<double> FreeTurn(const Costmap& costmap, const geometry::Pose2& X_MB, double yaw,
                                int sign, SweptFootprint* sweep);
 
-/// A turn on the spot to a heading, and a straight drive, forward or backward, to a place.
+/// A turn on the spot to a heading, and a straight drive as it is headed then to a place: forward,
+/// backward or, of a base that moves sideways, to its left or right.
 struct Piece {
   double yaw{0.0};                  ///< [rad]
   int sign{0};                      ///< of the turn; 0: the shorter way
-  Eigen::Vector2d p_MTo{0.0, 0.0};  ///< [m]; on the line through where it turned
+  Eigen::Vector2d p_MTo{0.0, 0.0};  ///< [m]
 };
 
 /// Brings a base from nearby to the place of its goal without sampling velocities, of which each
 /// may lead past it. A base that moves sideways creeps there as it is headed; another one turns its
 /// front or its back to the place, drives there straight, and leaves the turn to the goal's heading
-/// to the caller. Or it drives pieces of a way that was found elsewhere. Only where the footprint's
-/// way is free. A value.
+/// to the caller. Or it drives pieces of a way that was found elsewhere, whatever base. Only where
+/// the footprint's way is free. A value.
 class GoalApproach {
  public:
   explicit GoalApproach(const DwaParams& params);
@@ -109,6 +110,7 @@ class GoalApproach {
   bool ChooseOwn(const Costmap& costmap, const geometry::Pose2& X_MB, SweptFootprint* sweep);
   double TurnLeft(double yaw) const;
   double HeadingTowards(const Eigen::Vector2d& p_MB, double left) const;
+  double MostTowards(const Eigen::Vector2d& way_B) const;
   geometry::Twist2 Turn(const geometry::Pose2& X_MB, const geometry::Twist2& V_B) const;
   std::optional<geometry::Twist2> Drive(const geometry::Pose2& X_MB,
                                         const geometry::Twist2& V_B) const;

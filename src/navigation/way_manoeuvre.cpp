@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 #include <queue>
 #include <tuple>
 #include <unordered_set>
@@ -17,7 +18,7 @@ using Eigen::Vector2d;
 using geometry::Pose2;
 
 constexpr double kStuckPatience = 3.0;  // [s] without coming further, and between two searches
-constexpr int kMostManoeuvres = 4;      // for one goal
+constexpr int kMostManoeuvres = 4;      // without coming further by kFurther
 constexpr double kFacedAhead = 0.5;     // [m] on the way to what the base shall face
 
 constexpr double kFurther = 1.0, kFurthest = 2.0;  // [m] along the way, where pieces may end,
@@ -28,24 +29,27 @@ constexpr double kPieceReach = 2.5;                // [m] from where it stands
 constexpr double kDriveStep = 0.1;                 // [m] of a drive
 constexpr int kHeadings = 36;                      // that are told apart
 constexpr double kTurnStep = 2.0 * geometry::kPi / kHeadings;
-constexpr double kPieceSquare = 0.05;  // [m] of squares that are told apart
-constexpr double kTurnCost = 0.3;      // [m/rad]
-constexpr double kPieceCost = 0.15;    // [m] of stopping between pieces
-constexpr int kMostExpansions = 4000;  // with each margin
+constexpr double kPieceSquare = 0.05;     // [m] of squares that are told apart
+constexpr double kTurnCost = 0.3;         // [m/rad]
+constexpr double kSidewaysStep = 0.0708;  // [m] sqrt(2) squares: into another one whatever heading
+constexpr double kSidewaysCost = 2.0;     // of a drive's, as it is slower
+constexpr double kPieceCost = 0.15;       // [m] of stopping between pieces
+constexpr int kMostExpansions = 4000;     // with each margin
 
-enum class Move { kNone, kTurnLeft, kTurnRight, kForward, kBackward };
+enum class Move { kNone, kTurnLeft, kTurnRight, kForward, kBackward, kLeft, kRight };
 
-bool IsDrive(Move move) { return move == Move::kForward || move == Move::kBackward; }
+bool IsTurn(Move move) { return move == Move::kTurnLeft || move == Move::kTurnRight; }
+bool IsSideways(Move move) { return move == Move::kLeft || move == Move::kRight; }
 
-/// What a move is in one unit of time.
-geometry::Twist2 VelocityOf(Move move) {
-  if (IsDrive(move)) return {move == Move::kForward ? kDriveStep : -kDriveStep, 0.0, 0.0};
-  return {0.0, 0.0, move == Move::kTurnLeft ? kTurnStep : -kTurnStep};
+/// What a drive is in one unit of time.
+geometry::Twist2 DriveOf(Move move) {
+  if (IsSideways(move)) return {0.0, move == Move::kLeft ? kSidewaysStep : -kSidewaysStep, 0.0};
+  return {move == Move::kForward ? kDriveStep : -kDriveStep, 0.0, 0.0};
 }
 
 struct PieceNode {
   Pose2 X_MB;
-  int heading{0};         // in turn steps from the first one's
+  double heading{0.0};    // in turn steps from the way's; whole but before the first turn
   double cost{0.0};       // [m]
   std::size_t margin{0};  // of the move there: index of a sweep
   Move move{Move::kNone};
@@ -66,8 +70,10 @@ struct OpenPiece {
 class PieceSearch {
  public:
   PieceSearch(const Costmap& costmap, const Pose2& X_MB, const std::vector<Vector2d>& way,
-              std::vector<SweptFootprint>* sweeps)
+              bool moves_sideways, std::vector<SweptFootprint>* sweeps)
       : costmap_(costmap), X_MStart_(X_MB), sweeps_(sweeps) {
+    moves_ = {Move::kForward, Move::kBackward, Move::kTurnLeft, Move::kTurnRight};
+    if (moves_sideways) moves_.insert(moves_.end(), {Move::kLeft, Move::kRight});
     MeasureWay(way);
   }
 
@@ -79,6 +85,7 @@ class PieceSearch {
     open_ = {};
     PieceNode start;
     start.X_MB = X_MStart_;
+    start.heading = geometry::WrapToPi(X_MStart_.yaw - way_yaw()) / kTurnStep;
     start.margin = MarginOf(X_MStart_, {}, 0);
     if (start.margin == sweeps_->size()) return {};
     Add(start);
@@ -87,8 +94,7 @@ class PieceSearch {
       open_.pop();
       if (!closed_.insert(KeyOf(nodes_[at])).second) continue;
       if (IsThere(nodes_[at].X_MB)) return PiecesTo(at);
-      for (const Move move : {Move::kForward, Move::kBackward, Move::kTurnLeft, Move::kTurnRight})
-        Expand(at, move);
+      for (const Move move : moves_) Expand(at, move);
     }
     return {};
   }
@@ -115,6 +121,8 @@ class PieceSearch {
     }
   }
 
+  double way_yaw() const { return way_[first_end_].yaw; }
+
   double DistanceTo(std::size_t i, const Pose2& X_MB) const {
     return (way_[i].p_M - X_MB.position()).norm();
   }
@@ -128,7 +136,7 @@ class PieceSearch {
   }
 
   double Estimate(const Pose2& X_MB) const {
-    const double turn = std::abs(geometry::WrapToPi(way_[first_end_].yaw - X_MB.yaw));
+    const double turn = std::abs(geometry::WrapToPi(way_yaw() - X_MB.yaw));
     return DistanceTo(first_end_, X_MB) + kTurnCost * turn;
   }
 
@@ -136,7 +144,8 @@ class PieceSearch {
     const auto cell = [](double x) {
       return static_cast<std::uint64_t>(static_cast<std::int64_t>(std::floor(x / kPieceSquare)));
     };
-    const int heading = (node.heading % kHeadings + kHeadings) % kHeadings;
+    const int nearest = static_cast<int>(std::lround(node.heading));
+    const int heading = (nearest % kHeadings + kHeadings) % kHeadings;
     return ((cell(node.X_MB.x) & 0xfffffff) << 36) | ((cell(node.X_MB.y) & 0xfffffff) << 8) |
            static_cast<std::uint64_t>(heading);
   }
@@ -154,20 +163,35 @@ class PieceSearch {
     return first;
   }
 
+  /// Whole ones, so that the way's own heading is among them.
+  static double NextHeading(double heading, Move move) {
+    constexpr double kSame = 1e-6;
+    return move == Move::kTurnLeft ? std::floor(heading + kSame) + 1.0
+                                   : std::ceil(heading - kSame) - 1.0;
+  }
+
+  static double CostOf(const geometry::Twist2& motion) {
+    return std::abs(motion.vx) + kSidewaysCost * std::abs(motion.vy) +
+           kTurnCost * std::abs(motion.wz);
+  }
+
   void Expand(int parent, Move move) {
     const PieceNode from = nodes_[parent];
-    const geometry::Twist2 motion = VelocityOf(move);
     PieceNode next = from;
-    next.X_MB = PoseAfter(from.X_MB, motion, 1.0);
-    if (!IsDrive(move)) {
-      next.heading += move == Move::kTurnLeft ? 1 : -1;
-      next.X_MB.yaw = geometry::WrapToPi(X_MStart_.yaw + next.heading * kTurnStep);
+    geometry::Twist2 motion;
+    if (IsTurn(move)) {
+      next.heading = NextHeading(from.heading, move);
+      motion.wz = (next.heading - from.heading) * kTurnStep;
+      next.X_MB.yaw = geometry::WrapToPi(way_yaw() + next.heading * kTurnStep);
+    } else {
+      motion = DriveOf(move);
+      next.X_MB = PoseAfter(from.X_MB, motion, 1.0);
     }
     if ((next.X_MB.position() - X_MStart_.position()).norm() > kPieceReach) return;
     if (closed_.count(KeyOf(next)) > 0) return;
     next.margin = MarginOf(from.X_MB, motion, margin_);
     if (next.margin > std::max(margin_, from.margin) || next.margin == sweeps_->size()) return;
-    next.cost += IsDrive(move) ? kDriveStep : kTurnCost * kTurnStep;
+    next.cost += CostOf(motion);
     if (move != from.move) next.cost += kPieceCost;
     next.move = move;
     next.parent = parent;
@@ -183,9 +207,9 @@ class PieceSearch {
     Move last = Move::kNone;
     for (const int i : nodes) {
       const PieceNode& node = nodes_[i];
-      const bool goes_on = node.move == last || (IsDrive(node.move) && !IsDrive(last));
+      const bool goes_on = node.move == last || (!IsTurn(node.move) && IsTurn(last));
       if (pieces.empty() || !goes_on) pieces.emplace_back();
-      if (!IsDrive(node.move)) pieces.back().sign = node.move == Move::kTurnLeft ? 1 : -1;
+      if (IsTurn(node.move)) pieces.back().sign = node.move == Move::kTurnLeft ? 1 : -1;
       pieces.back().yaw = node.X_MB.yaw;
       pieces.back().p_MTo = node.X_MB.position();
       last = node.move;
@@ -196,6 +220,7 @@ class PieceSearch {
   const Costmap& costmap_;
   Pose2 X_MStart_;
   std::vector<SweptFootprint>* sweeps_;
+  std::vector<Move> moves_;
   std::vector<WayPoint> way_;
   std::size_t first_end_{0};
   std::size_t margin_{0};
@@ -207,9 +232,9 @@ class PieceSearch {
 }  // namespace
 
 std::vector<Piece> FindPieces(const Costmap& costmap, const Pose2& X_MB,
-                              const std::vector<Vector2d>& way,
+                              const std::vector<Vector2d>& way, bool moves_sideways,
                               std::vector<SweptFootprint>* sweeps) {
-  PieceSearch search(costmap, X_MB, way, sweeps);
+  PieceSearch search(costmap, X_MB, way, moves_sideways, sweeps);
   std::vector<Piece> pieces;
   for (std::size_t i = 0; i < sweeps->size() && pieces.empty(); ++i) pieces = search.Find(i);
   return pieces;
@@ -229,6 +254,7 @@ void WayManoeuvre::SetWay(bool is_same_goal) {
   drive_.End();
   is_stuck_ = false;
   num_tries_ = 0;
+  left_at_try_ = std::numeric_limits<double>::infinity();
 }
 
 WayManoeuvre::Step WayManoeuvre::Update(const Costmap& costmap, const Pose2& X_MB,
@@ -241,6 +267,7 @@ WayManoeuvre::Step WayManoeuvre::Update(const Costmap& costmap, const Pose2& X_M
     const auto ahead = static_cast<std::size_t>(kFacedAhead / params_.sim_granularity);
     const Vector2d& p_MAhead = way[std::min(nearest + ahead, way.size() - 1)];
     is_stuck_ = watch_.Stalls(left + LeftTo(X_MB, p_MAhead)) || is_stuck_;
+    if (left < left_at_try_ - kFurther) num_tries_ = 0;
     const bool is_near = (way.back() - X_MB.position()).norm() <= NearGoal(params_);
     if (is_near || num_tries_ == kMostManoeuvres ||
         (num_tries_ > 0 && since_search_ < kStuckPatience))
@@ -249,9 +276,11 @@ WayManoeuvre::Step WayManoeuvre::Update(const Costmap& costmap, const Pose2& X_M
     if (!IsStopped(V_B, params_)) return {Next::kBrake, {}};
     is_stuck_ = false;
     ++num_tries_;
+    left_at_try_ = std::min(left, left_at_try_);
     since_search_ = 0.0;
-    auto pieces = FindPieces(
-        costmap, X_MB, {way.begin() + static_cast<std::ptrdiff_t>(nearest), way.end()}, sweeps);
+    auto pieces =
+        FindPieces(costmap, X_MB, {way.begin() + static_cast<std::ptrdiff_t>(nearest), way.end()},
+                   params_.max_lateral_velocity > 0.0, sweeps);
     if (pieces.empty()) return {Next::kNothing, {}};
     drive_.BeginAlong(std::move(pieces));
   }

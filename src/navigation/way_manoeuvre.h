@@ -1,5 +1,6 @@
 #pragma once
 
+#include <limits>
 #include <vector>
 
 #include "hires/geometry/pose.h"
@@ -9,18 +10,19 @@
 
 namespace hires::navigation {
 
-/// Turns on the spot and straight drives, forward and backward, that bring a base from where it
-/// stands to a place 1 m or more further along its way, headed along it; with the widest margin
-/// with which a bounded search finds some the cheapest ones, which are short and few; or none.
+/// Turns on the spot and straight drives, forward, backward and, of a base that can, sideways, that
+/// bring it from where it stands to a place 1 m or more further along its way, headed along it;
+/// with the widest margin with which a bounded search finds some the cheapest ones, which are short
+/// and few; or none.
 /// @param way     [m] in the map frame, densely spaced; the first one is the nearest to the base.
 /// @param sweeps  with margins, the widest first; the last one is the footprint's own.
 std::vector<Piece> FindPieces(const Costmap& costmap, const geometry::Pose2& X_MB,
-                              const std::vector<Eigen::Vector2d>& way,
+                              const std::vector<Eigen::Vector2d>& way, bool moves_sideways,
                               std::vector<SweptFootprint>* sweeps);
 
 /// What a base does on its way that turns to and fro without coming any further, or stands and has
 /// no valid velocity: it stops, and drives a few pieces (FindPieces) to where its way goes on.
-/// After few tries for one goal it does nothing. A value.
+/// After few tries for one goal that brought it no further it does nothing. A value.
 class WayManoeuvre {
  public:
   explicit WayManoeuvre(const DwaParams& params);
@@ -48,8 +50,9 @@ class WayManoeuvre {
   ProgressWatch watch_;
   GoalApproach drive_;
   bool is_stuck_{false};
-  int num_tries_{0};          // for this goal
-  double since_search_{0.0};  // [s]
+  int num_tries_{0};  // for this goal, since it came further than before the first one
+  double left_at_try_{std::numeric_limits<double>::infinity()};  // [m] the least of them
+  double since_search_{0.0};                                     // [s]
 };
 
 }  // namespace hires::navigation

@@ -58,9 +58,13 @@ std::vector<SweptFootprint> SweepsOf(const geometry::Polygon& footprint) {
   return sweeps;
 }
 
+/// Of bases that move sideways, and of others.
+class WayManoeuvreTest : public testing::TestWithParam<bool> {};
+INSTANTIATE_TEST_SUITE_P(Sideways, WayManoeuvreTest, testing::Bool());
+
 // Each turn and each drive of what is found is free, and it ends beyond the door, headed along the
 // way.
-TEST(WayManoeuvreTest, PiecesAreFreeAndLeadThroughADoor) {
+TEST_P(WayManoeuvreTest, PiecesAreFreeAndLeadThroughADoor) {
   const Costmap costmap = WithDoor().MakeCostmap();
   const base::Rng root(31);
   for (int seed = 0; seed < Rounds(80); ++seed) {
@@ -68,7 +72,7 @@ TEST(WayManoeuvreTest, PiecesAreFreeAndLeadThroughADoor) {
     const DrawnBase drawn = Draw(costmap, &rng);
     auto sweeps = SweepsOf(drawn.footprint);
     const std::vector<Vector2d> way = WayFrom(drawn.X_MB.y);
-    const auto pieces = FindPieces(costmap, drawn.X_MB, way, &sweeps);
+    const auto pieces = FindPieces(costmap, drawn.X_MB, way, GetParam(), &sweeps);
     ASSERT_FALSE(pieces.empty()) << seed;
     Pose2 X_MB = drawn.X_MB;
     for (const Piece& piece : pieces) {
@@ -76,8 +80,9 @@ TEST(WayManoeuvreTest, PiecesAreFreeAndLeadThroughADoor) {
       EXPECT_TRUE(sweeps.back().IsFree(costmap, X_MB, {0.0, 0.0, turn}, 1.0)) << seed;
       X_MB.yaw = piece.yaw;
       const Vector2d ahead = X_MB.Inverse() * piece.p_MTo;
-      EXPECT_NEAR(ahead.y(), 0.0, 1e-6) << seed;
-      EXPECT_TRUE(sweeps.back().IsFree(costmap, X_MB, {ahead.x(), 0.0, 0.0}, 1.0)) << seed;
+      const double beside = GetParam() ? ahead.cwiseAbs().minCoeff() : ahead.y();
+      EXPECT_NEAR(beside, 0.0, 1e-6) << seed;
+      EXPECT_TRUE(sweeps.back().IsFree(costmap, X_MB, {ahead.x(), ahead.y(), 0.0}, 1.0)) << seed;
       X_MB.x = piece.p_MTo.x();
       X_MB.y = piece.p_MTo.y();
     }
@@ -88,7 +93,9 @@ TEST(WayManoeuvreTest, PiecesAreFreeAndLeadThroughADoor) {
 }
 
 // A base that stands before a door without a valid velocity comes through it, and touches nothing.
-TEST(WayManoeuvreTest, WhoStandsBeforeADoorDrivesThroughIt) {
+TEST_P(WayManoeuvreTest, WhoStandsBeforeADoorDrivesThroughIt) {
+  DwaParams params;
+  if (!GetParam()) params.max_lateral_velocity = 0.0;
   const Scene scene = WithDoor();
   const Costmap costmap = scene.MakeCostmap();
   const base::Rng root(32);
@@ -97,7 +104,7 @@ TEST(WayManoeuvreTest, WhoStandsBeforeADoorDrivesThroughIt) {
     const DrawnBase drawn = Draw(costmap, &rng);
     auto sweeps = SweepsOf(drawn.footprint);
     const std::vector<Vector2d> way = WayFrom(drawn.X_MB.y);
-    WayManoeuvre manoeuvre({});
+    WayManoeuvre manoeuvre(params);
     manoeuvre.SetMotionSet(test_support::kSlow);
     manoeuvre.SetWay(false);
     manoeuvre.Stand();
@@ -116,11 +123,13 @@ TEST(WayManoeuvreTest, WhoStandsBeforeADoorDrivesThroughIt) {
   }
 }
 
-TEST(WayManoeuvreTest, NothingIsDoneWhileABaseComesFurther) {
+TEST_P(WayManoeuvreTest, NothingIsDoneWhileABaseComesFurther) {
   const Costmap costmap = EmptyScene(6.0, 6.0).MakeCostmap();
   auto sweeps = SweepsOf(test_support::Rectangle(-0.3, -0.3, 0.3, 0.3));
   const std::vector<Vector2d> way = WayFrom(1.0);
-  WayManoeuvre manoeuvre({});
+  DwaParams params;
+  if (!GetParam()) params.max_lateral_velocity = 0.0;
+  WayManoeuvre manoeuvre(params);
   manoeuvre.SetMotionSet(test_support::kSlow);
   for (std::size_t i = 0; i + 40 < way.size(); ++i) {
     const Pose2 X_MB{way[i].x(), way[i].y(), 0.5 * geometry::kPi};
