@@ -78,15 +78,19 @@ void TabletopRecogniserNode::OnCloud(const sensor_msgs::PointCloud2ConstPtr& msg
 }
 
 bool TabletopRecogniserNode::RefuseIfUntimely() {
-  const perception::CloudAgeParams& limits = params_.recogniser.age;
+  perception::CloudAgeParams limits = params_.recogniser.age;
+  // There is one clock in simulated time: a cloud ahead of it came before the message on /clock.
+  const bool is_simulated = ros::Time::isSimTime();
+  if (is_simulated) limits.max_ahead = std::max(limits.max_ahead, limits.max_age);
   const double stamp = waiting_->header.stamp.toSec(), now = ros::Time::now().toSec();
   const perception::CloudAge age = perception::AgeOf(stamp, now, limits);
   if (age == perception::CloudAge::kTimely) return false;
   if (age == perception::CloudAge::kAhead) {
     Refuse(Fault::kAhead,
-           fmt::format("its stamp lies {:.1f} s in the future, wanted {:g} at most; synchronise "
-                       "the clocks of the computers",
-                       stamp - now, limits.max_ahead));
+           fmt::format("its stamp lies {:.1f} s in the future, wanted {:g} at most; {}",
+                       stamp - now, limits.max_ahead,
+                       is_simulated ? "let what gives the time on /clock give the clouds as well"
+                                    : "synchronise the clocks of the computers"));
   } else if (waits_for_.empty()) {
     Refuse(Fault::kTooOld, fmt::format("it is {:.1f} s old, wanted {:g} at most; play bags with "
                                        "--clock and use_sim_time",
