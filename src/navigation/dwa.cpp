@@ -204,7 +204,8 @@ void DwaPlanner::Impl::LeaveGoal() {
 DwaResult DwaPlanner::Impl::Update(const Costmap& costmap, const geometry::Pose2& X_MB,
                                    const geometry::Twist2& V_B) {
   DropDrivenPath(X_MB.position());
-  if (manoeuvre_.is_active()) {
+  const bool was_active = manoeuvre_.is_active();
+  if (was_active) {
     if (const auto result = Manoeuvre(costmap, X_MB, V_B)) return *result;
   }
   if (approach_.is_active()) {
@@ -217,11 +218,12 @@ DwaResult DwaPlanner::Impl::Update(const Costmap& costmap, const geometry::Pose2
     approach_.BeginTo(X_MGoal_);
     if (const auto result = CloseIn(costmap, X_MB, V_B)) return *result;
   }
-  if (const auto result = Manoeuvre(costmap, X_MB, V_B)) return *result;
+  if (!was_active) {
+    if (const auto result = Manoeuvre(costmap, X_MB, V_B)) return *result;
+  }
   const DwaResult result = Drive(costmap, X_MB, V_B);
-  if (result.status != DwaStatus::kNoValidTrajectory) return result;
-  manoeuvre_.Stand();
-  return Manoeuvre(costmap, X_MB, V_B).value_or(result);
+  if (result.status == DwaStatus::kNoValidTrajectory) manoeuvre_.Stand();  // for the next cycle
+  return result;
 }
 
 /// None: the window drives.

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
-#include <limits>
 #include <queue>
 #include <tuple>
 #include <unordered_set>
@@ -17,9 +16,12 @@ namespace {
 using Eigen::Vector2d;
 using geometry::Pose2;
 
-constexpr double kStuckPatience = 3.0;  // [s] without coming further, and between two searches
-constexpr int kMostManoeuvres = 4;      // without coming further by kFurther
-constexpr double kFacedAhead = 0.5;     // [m] on the way to what the base shall face
+// [s] Without coming further, and between two searches; twice as long after each that finds
+// nothing.
+constexpr double kStuckPatience = 3.0;
+constexpr int kMostManoeuvres = 4;       // without coming further by kFurther
+constexpr double kFoundElsewhere = 0.3;  // [m] in a cycle: it was found elsewhere
+constexpr double kFacedAhead = 0.5;      // [m] on the way to what the base shall face
 
 constexpr double kFurther = 1.0, kFurthest = 2.0;  // [m] along the way, where pieces may end,
 constexpr double kBeside = 0.1;                    // [m] so far beside it at most,
@@ -29,8 +31,10 @@ constexpr double kPieceReach = 2.5;                // [m] from where it stands
 constexpr double kDriveStep = 0.1;                 // [m] of a drive
 constexpr int kHeadings = 36;                      // that are told apart
 constexpr double kTurnStep = 2.0 * geometry::kPi / kHeadings;
-constexpr double kPieceSquare = 0.05;     // [m] of squares that are told apart
-constexpr double kTurnCost = 0.3;         // [m/rad]
+constexpr int kMostTurnSteps = kHeadings / 2;  // of a piece
+constexpr double kSameHeading = 1e-6;          // of turn steps: one and the same heading
+constexpr double kPieceSquare = 0.05;          // [m] of squares that are told apart
+constexpr double kTurnCost = 0.3;              // [m/rad]
 constexpr double kSidewaysStep = 0.0708;  // [m] sqrt(2) squares: into another one whatever heading
 constexpr double kSidewaysCost = 2.0;     // of a drive's, as it is slower
 constexpr double kPieceCost = 0.15;       // [m] of stopping between pieces
@@ -145,7 +149,8 @@ class PieceSearch {
       return static_cast<std::uint64_t>(static_cast<std::int64_t>(std::floor(x / kPieceSquare)));
     };
     const int nearest = static_cast<int>(std::lround(node.heading));
-    const int heading = (nearest % kHeadings + kHeadings) % kHeadings;
+    const int whole = (nearest % kHeadings + kHeadings) % kHeadings;
+    const int heading = IsWhole(node.heading) ? whole : kHeadings + whole;
     return ((cell(node.X_MB.x) & 0xfffffff) << 36) | ((cell(node.X_MB.y) & 0xfffffff) << 8) |
            static_cast<std::uint64_t>(heading);
   }
@@ -163,11 +168,14 @@ class PieceSearch {
     return first;
   }
 
+  static bool IsWhole(double heading) {
+    return std::abs(heading - std::round(heading)) < kSameHeading;
+  }
+
   /// Whole ones, so that the way's own heading is among them.
   static double NextHeading(double heading, Move move) {
-    constexpr double kSame = 1e-6;
-    return move == Move::kTurnLeft ? std::floor(heading + kSame) + 1.0
-                                   : std::ceil(heading - kSame) - 1.0;
+    return move == Move::kTurnLeft ? std::floor(heading + kSameHeading) + 1.0
+                                   : std::ceil(heading - kSameHeading) - 1.0;
   }
 
   static double CostOf(const geometry::Twist2& motion) {
@@ -198,17 +206,23 @@ class PieceSearch {
     Add(next);
   }
 
-  /// Turns and the drive after them are one piece.
+  /// Turns and the drive after them are one piece; of more than half a turn two, as which way a
+  /// piece is turned would not be clear.
   std::vector<Piece> PiecesTo(int end) const {
     std::vector<int> nodes;
     for (int at = end; at > 0; at = nodes_[at].parent) nodes.push_back(at);
     std::reverse(nodes.begin(), nodes.end());
     std::vector<Piece> pieces;
     Move last = Move::kNone;
+    int num_turns = 0;
     for (const int i : nodes) {
       const PieceNode& node = nodes_[i];
       const bool goes_on = node.move == last || (!IsTurn(node.move) && IsTurn(last));
-      if (pieces.empty() || !goes_on) pieces.emplace_back();
+      num_turns = IsTurn(node.move) && goes_on ? num_turns + 1 : 1;
+      if (pieces.empty() || !goes_on || (IsTurn(node.move) && num_turns > kMostTurnSteps)) {
+        pieces.emplace_back();
+        num_turns = 1;
+      }
       if (IsTurn(node.move)) pieces.back().sign = node.move == Move::kTurnLeft ? 1 : -1;
       pieces.back().yaw = node.X_MB.yaw;
       pieces.back().p_MTo = node.X_MB.position();
@@ -241,7 +255,9 @@ std::vector<Piece> FindPieces(const Costmap& costmap, const Pose2& X_MB,
 }
 
 WayManoeuvre::WayManoeuvre(const DwaParams& params)
-    : params_(params), watch_(params, kStuckPatience), drive_(params) {}
+    : params_(params), watch_(params, kStuckPatience), drive_(params) {
+  SetWay(false);
+}
 
 void WayManoeuvre::SetMotionSet(const robot::MotionSet& limits) {
   watch_.SetMotionSet(limits);
@@ -250,11 +266,13 @@ void WayManoeuvre::SetMotionSet(const robot::MotionSet& limits) {
 
 void WayManoeuvre::SetWay(bool is_same_goal) {
   watch_.Reset();
+  is_stuck_ = false;
+  is_way_new_ = true;
   if (is_same_goal) return;
   drive_.End();
-  is_stuck_ = false;
   num_tries_ = 0;
-  left_at_try_ = std::numeric_limits<double>::infinity();
+  patience_ = 0.0;
+  since_search_ = 0.0;
 }
 
 WayManoeuvre::Step WayManoeuvre::Update(const Costmap& costmap, const Pose2& X_MB,
@@ -262,32 +280,44 @@ WayManoeuvre::Step WayManoeuvre::Update(const Costmap& costmap, const Pose2& X_M
                                         const std::vector<Vector2d>& way, std::size_t nearest,
                                         std::vector<SweptFootprint>* sweeps) {
   since_search_ += params_.control_period;
+  const bool has_jumped = p_MLast_ && (X_MB.position() - *p_MLast_).norm() > kFoundElsewhere;
+  p_MLast_ = X_MB.position();
+  if (has_jumped) drive_.End();
   if (!drive_.is_active()) {
-    const double left = params_.sim_granularity * static_cast<double>(way.size() - 1 - nearest);
-    const auto ahead = static_cast<std::size_t>(kFacedAhead / params_.sim_granularity);
-    const Vector2d& p_MAhead = way[std::min(nearest + ahead, way.size() - 1)];
-    is_stuck_ = watch_.Stalls(left + LeftTo(X_MB, p_MAhead)) || is_stuck_;
-    if (left < left_at_try_ - kFurther) num_tries_ = 0;
-    const bool is_near = (way.back() - X_MB.position()).norm() <= NearGoal(params_);
-    if (is_near || num_tries_ == kMostManoeuvres ||
-        (num_tries_ > 0 && since_search_ < kStuckPatience))
-      is_stuck_ = false;
+    Look(X_MB, way, nearest);
     if (!is_stuck_) return {Next::kNothing, {}};
     if (!IsStopped(V_B, params_)) return {Next::kBrake, {}};
     is_stuck_ = false;
-    ++num_tries_;
-    left_at_try_ = std::min(left, left_at_try_);
     since_search_ = 0.0;
     auto pieces =
         FindPieces(costmap, X_MB, {way.begin() + static_cast<std::ptrdiff_t>(nearest), way.end()},
                    params_.max_lateral_velocity > 0.0, sweeps);
+    patience_ = pieces.empty() ? std::max(2.0 * patience_, kStuckPatience) : kStuckPatience;
     if (pieces.empty()) return {Next::kNothing, {}};
+    ++num_tries_;
     drive_.BeginAlong(std::move(pieces));
   }
   const GoalApproach::Step step = drive_.Update(costmap, X_MB, V_B, &sweeps->back());
   if (step.state == GoalApproach::State::kDriving) return {Next::kDrive, step.velocity};
   watch_.Reset();
   return {Next::kNothing, {}};
+}
+
+/// Whether it is stuck, and something shall be done about it now.
+void WayManoeuvre::Look(const Pose2& X_MB, const std::vector<Vector2d>& way, std::size_t nearest) {
+  const double left = params_.sim_granularity * static_cast<double>(way.size() - 1 - nearest);
+  const auto ahead = static_cast<std::size_t>(kFacedAhead / params_.sim_granularity);
+  const Vector2d& p_MAhead = way[std::min(nearest + ahead, way.size() - 1)];
+  is_stuck_ = watch_.Stalls(left + LeftTo(X_MB, p_MAhead)) || is_stuck_;
+  if (is_way_new_) least_left_ = left;  // of ways of different length nothing is compared
+  is_way_new_ = false;
+  if (left < least_left_ - kFurther) {
+    least_left_ = left;
+    num_tries_ = 0;
+  }
+  const bool is_near = (way.back() - X_MB.position()).norm() <= NearGoal(params_);
+  if (is_near || num_tries_ == kMostManoeuvres || since_search_ < patience_) is_stuck_ = false;
+  if (is_stuck_) least_left_ = std::min(least_left_, left);
 }
 
 }  // namespace hires::navigation

@@ -1,6 +1,6 @@
 #pragma once
 
-#include <limits>
+#include <optional>
 #include <vector>
 
 #include "hires/geometry/pose.h"
@@ -22,13 +22,13 @@ std::vector<Piece> FindPieces(const Costmap& costmap, const geometry::Pose2& X_M
 
 /// What a base does on its way that turns to and fro without coming any further, or stands and has
 /// no valid velocity: it stops, and drives a few pieces (FindPieces) to where its way goes on.
-/// After few tries for one goal that brought it no further it does nothing. A value.
+/// After few manoeuvres that brought it no further it does nothing. A value.
 class WayManoeuvre {
  public:
   explicit WayManoeuvre(const DwaParams& params);
 
   void SetMotionSet(const robot::MotionSet& limits);
-  /// A manoeuvre goes on where the goal is the same.
+  /// A manoeuvre goes on where the goal is the same, unless the base was found elsewhere.
   void SetWay(bool is_same_goal);
   /// The base stands, and there is no valid velocity.
   void Stand() { is_stuck_ = true; }
@@ -46,13 +46,19 @@ class WayManoeuvre {
               std::vector<SweptFootprint>* sweeps);
 
  private:
+  void Look(const geometry::Pose2& X_MB, const std::vector<Eigen::Vector2d>& way,
+            std::size_t nearest);
+
   DwaParams params_;
   ProgressWatch watch_;
   GoalApproach drive_;
+  std::optional<Eigen::Vector2d> p_MLast_;  // [m] in the last cycle
   bool is_stuck_{false};
-  int num_tries_{0};  // for this goal, since it came further than before the first one
-  double left_at_try_{std::numeric_limits<double>::infinity()};  // [m] the least of them
-  double since_search_{0.0};                                     // [s]
+  bool is_way_new_{true};
+  double least_left_{0.0};    // [m] of the way, as far as it counts
+  int num_tries_{0};          // for this goal, since it came further
+  double since_search_{0.0};  // [s]
+  double patience_{0.0};      // [s] between that one and the next
 };
 
 }  // namespace hires::navigation

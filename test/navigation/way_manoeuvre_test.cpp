@@ -123,6 +123,72 @@ TEST_P(WayManoeuvreTest, WhoStandsBeforeADoorDrivesThroughIt) {
   }
 }
 
+// A heading between two that are told apart bars no turn.
+TEST_P(WayManoeuvreTest, OnAFreeFloorItTurnsTheShorterWay) {
+  const Costmap costmap = EmptyScene(6.0, 6.0).MakeCostmap();
+  auto sweeps = SweepsOf(test_support::Rectangle(-0.3, -0.3, 0.3, 0.3));
+  const std::vector<Vector2d> way = WayFrom(1.0);
+  for (double off = -2.4; off <= 2.4; off += 0.11) {
+    if (std::abs(off) < 0.3) continue;  // headed along the way as it is
+    const auto pieces =
+        FindPieces(costmap, {3.0, 1.0, 0.5 * geometry::kPi + off}, way, GetParam(), &sweeps);
+    ASSERT_FALSE(pieces.empty()) << off;
+    double yaw = 0.5 * geometry::kPi + off;
+    for (const Piece& piece : pieces) {
+      const double turn = TurnBegun(piece.yaw - yaw, piece.sign);
+      EXPECT_LE(turn * off, 0.0) << off;
+      yaw = piece.yaw;
+    }
+  }
+}
+
+struct AskedManoeuvre {
+  explicit AskedManoeuvre(bool moves_sideways) : manoeuvre(Params(moves_sideways)) {
+    manoeuvre.SetMotionSet(test_support::kSlow);
+    manoeuvre.SetWay(false);
+  }
+  static DwaParams Params(bool moves_sideways) {
+    DwaParams params;
+    if (!moves_sideways) params.max_lateral_velocity = 0.0;
+    return params;
+  }
+  /// Of a base that stands without a valid velocity.
+  WayManoeuvre::Next Ask(const Costmap& costmap, const Pose2& X_MB) {
+    manoeuvre.Stand();
+    return manoeuvre.Update(costmap, X_MB, {}, WayFrom(X_MB.y), 0, &sweeps).next;
+  }
+
+  WayManoeuvre manoeuvre;
+  std::vector<SweptFootprint> sweeps = SweepsOf(test_support::Rectangle(-0.3, -0.3, 0.3, 0.3));
+};
+
+// What stood in the door for a minute has gone: it drives, and did not look all the time.
+TEST_P(WayManoeuvreTest, WhatBlocksTheWayForATimeUsesNoTryUp) {
+  Scene closed = WithDoor();
+  closed.Add(2.5, 2.8, 3.5, 3.2);
+  const Costmap with_person = closed.MakeCostmap(), without = WithDoor().MakeCostmap();
+  AskedManoeuvre asked(GetParam());
+  const Pose2 X_MB{3.0, 2.3, 0.5 * geometry::kPi + 0.7};
+  for (int cycle = 0; cycle < 600; ++cycle)
+    ASSERT_EQ(asked.Ask(with_person, X_MB), WayManoeuvre::Next::kNothing);
+  int waits = 0;
+  while (asked.Ask(without, X_MB) == WayManoeuvre::Next::kNothing && waits < 1000) ++waits;
+  EXPECT_LT(waits, 700);
+  EXPECT_TRUE(asked.manoeuvre.is_active());
+}
+
+TEST_P(WayManoeuvreTest, ABaseThatIsFoundElsewhereDrivesNoOldPiece) {
+  const Costmap costmap = WithDoor().MakeCostmap();
+  AskedManoeuvre asked(GetParam());
+  const Pose2 X_MB{3.0, 2.3, 0.5 * geometry::kPi + 0.7};
+  ASSERT_EQ(asked.Ask(costmap, X_MB), WayManoeuvre::Next::kDrive);
+  asked.manoeuvre.SetWay(true);
+  EXPECT_TRUE(asked.manoeuvre.is_active());
+  const Pose2 X_MFound{1.5, 1.0, 0.0};
+  asked.manoeuvre.Update(costmap, X_MFound, {}, WayFrom(1.0), 0, &asked.sweeps);
+  EXPECT_FALSE(asked.manoeuvre.is_active());
+}
+
 TEST_P(WayManoeuvreTest, NothingIsDoneWhileABaseComesFurther) {
   const Costmap costmap = EmptyScene(6.0, 6.0).MakeCostmap();
   auto sweeps = SweepsOf(test_support::Rectangle(-0.3, -0.3, 0.3, 0.3));
