@@ -112,8 +112,8 @@ class TaskPlay {
                     lines_.goals.Send([this, activity] { middle_layer_.Cancel(activity); });
                   }}) {
     blackboard_.Load(scenario.knowledge, order.seed);
-    blackboard_.Write(AreaFluents(parts.config.scene.areas, blackboard_.view()), {}, {},
-                      {knowledge::Source::kKnowledge, 0, -temporal::kForever});
+    blackboard_.Write(AreaFluents(parts.config.scene.areas, blackboard_.view(), *parts.ontology),
+                      {}, {}, {knowledge::Source::kKnowledge, 0, -temporal::kForever});
     blackboard_.SetListener([this] { OnWritten(); });
     OnWritten();
   }
