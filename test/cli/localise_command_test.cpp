@@ -331,6 +331,23 @@ TEST_F(LocaliseCommandTest, BadInputIsRefused) {
   EXPECT_FALSE(std::filesystem::exists(out));
 }
 
+TEST_F(LocaliseCommandTest, WhatIsReadIsNotWrittenOver) {
+  const std::string log = Log(Drive(3)), both = Path("both");
+  const std::string before = base::ReadTextFile(log);
+  const auto run = [&](const std::string& trajectory, const std::string& json) {
+    return RunHires({"localise"},
+                    {log, "--map", Path("rooms.yaml"), "--trajectory", trajectory, "--json", json});
+  };
+  const Ended ended = run(log, Path("rooms.yaml"));
+  EXPECT_EQ(ended.code, kExitBadInput);
+  EXPECT_THAT(ended.err, AllOf(HasSubstr("--trajectory " + log + ": would write over the log"),
+                               HasSubstr("rooms.yaml: would write over the map")));
+  EXPECT_EQ(base::ReadTextFile(log), before);
+  EXPECT_THAT(run(both, both).err,
+              HasSubstr("--trajectory and --json: both " + both + "; name two files"));
+  EXPECT_THAT(run("-", "-").err, HasSubstr("--trajectory -: is not printed"));
+}
+
 TEST_F(LocaliseCommandTest, MapsThatTellNothingAreRefused) {
   const std::string log = Log(Drive(3));
   world::OccupancyGrid grid = RoomsWithShelf();

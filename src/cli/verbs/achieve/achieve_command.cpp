@@ -11,6 +11,7 @@
 #include <optional>
 #include <tuple>
 
+#include "cli/outputs.h"
 #include "cli/verbs/achieve/achieve_display.h"
 #include "cli/verbs/imagine/imagine_start.h"
 #include "cli/whole_number.h"
@@ -32,14 +33,6 @@ int TerminalWidth() {
   winsize size{};
   if (isatty(STDOUT_FILENO) == 0 || ioctl(STDOUT_FILENO, TIOCGWINSZ, &size) != 0) return 0;
   return size.ws_col > 0 ? size.ws_col : 80;
-}
-
-/// Before the robot sets out.
-void RequireFolders(const AchieveOptions& options) {
-  for (const std::string& path : {options.timeline, options.record, options.store}) {
-    if (!path.empty()) reports::RequireFolderOf(path);
-  }
-  CheckReport(options.report);
 }
 
 void RequireRecorder(const AchieveOptions& options, const loop::RecordLoop& record) {
@@ -65,7 +58,7 @@ ReportOrigin OriginOf(const AchieveOptions& options, const std::string& package_
   ReportOrigin origin;
   origin.verb = "achieve";
   origin.is_local = options.is_local;
-  if (!options.is_local || !IsWanted(options.report)) return origin;
+  if (!options.is_local) return origin;
   origin.inputs = {{"scenario", ScenarioPath(options, package_folder)},
                    {"virtual time", LoopPath(options, package_folder)},
                    {"world", options.files.world},
@@ -78,6 +71,20 @@ ReportOrigin OriginOf(const AchieveOptions& options, const std::string& package_
     origin.inputs.push_back({"areas", file});
   origin.hashes = {{"files", reports::ConfigurationHash(package_folder)}};
   return origin;
+}
+
+/// Before the robot sets out.
+void RequireOutputs(const AchieveOptions& options, const ReportOrigin& origin) {
+  std::vector<VerbFile> inputs;
+  for (const ReportInput& input : origin.inputs) inputs.push_back({input.what, input.path});
+  CheckOutputs({{"--timeline", options.timeline},
+                {"--record", options.record},
+                {"--json", options.report.json},
+                {"--html", options.report.html},
+                {"--png", options.report.png}},
+               inputs);
+  if (!options.store.empty()) reports::RequireFolderOf(options.store);
+  CheckReport(options.report);
 }
 
 /// How things really stand in the end, and what the robot touched: no robot knows it.
@@ -292,13 +299,12 @@ int RunAchieveVerb(const AchieveOptions& options, const std::string& package_fol
   if (!options.is_local && options.task.empty()) {
     throw base::ConfigError("task: nothing came, wanted a task, as 'serve_coffee_to_guest guest1'");
   }
-  RequireFolders(options);
+  const ReportOrigin origin = OriginOf(options, package_folder);
+  RequireOutputs(options, origin);
   AchieveDisplay display(TerminalWidth());
   const auto show = [&](const loop::AchieveStatus& status) {
     std::cout << display.Show(status) << std::flush;
   };
-  const ReportOrigin origin = OriginOf(options, package_folder);
-  RefuseInputs(options.report, origin.inputs);
   const double begun = base::SteadyNow();
   std::optional<loop::LoopRun> local;
   const auto recording = options.record.empty() ? nullptr : record(options.record);

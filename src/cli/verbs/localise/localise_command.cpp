@@ -5,12 +5,14 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <iostream>
 #include <nlohmann/json.hpp>
 #include <optional>
 
 #include "cli/drive_log.h"
 #include "cli/exit_code.h"
+#include "cli/outputs.h"
 #include "cli/whole_number.h"
 #include "hires/base/error.h"
 #include "hires/base/text.h"
@@ -287,13 +289,18 @@ void AddLocaliseVerb(CLI::App* app, LocaliseOptions* o) {
 
 int RunLocaliseVerb(const LocaliseOptions& options, const std::string& package_folder,
                     const ReadDriveBag& read_bag) {
-  for (const std::string& file : {options.trajectory, options.json})
-    if (!file.empty() && file != "-") reports::RequireFolderOf(file);
+  CheckOutputs(
+      {{"--trajectory", options.trajectory}, {"--json", options.json, true}},
+      {{"log", options.drive.log}, {"map", options.map}, {"configuration", options.config}});
   const auto config = localisation::ReadLocalisationConfig(base::ParamReader::FromFile(
       options.config.empty() ? package_folder + "/config/localisation.yaml" : options.config));
   const Answer answer = Localise(options, config.filter, package_folder, read_bag);
   if (answer.has_path())
     localisation::WriteTumTrajectory(answer.localised.path, options.trajectory);
+  if (!answer.has_path() && std::filesystem::exists(options.trajectory)) {
+    std::cerr << "hires localise: " << options.trajectory
+              << " is not written now; what stands there is older\n";
+  }
   if (options.json == "-") {
     std::cout << ToJson(answer, options).dump(2) << '\n';
   } else {

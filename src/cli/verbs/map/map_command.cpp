@@ -13,6 +13,7 @@
 
 #include "cli/drive_log.h"
 #include "cli/exit_code.h"
+#include "cli/outputs.h"
 #include "cli/verbs/imagine/imagine_start.h"
 #include "cli/whole_number.h"
 #include "hires/base/error.h"
@@ -271,9 +272,12 @@ void AddMapVerb(CLI::App* app, MapOptions* o) {
 int RunMapVerb(const MapOptions& options, const std::string& package_folder,
                const ReadDriveBag& read_bag, const std::function<bool()>& cancelled) {
   const std::string map = MapFile(options.output);
-  for (const std::string& file :
-       {map, options.trajectory, options.json, options.log_output, options.truth_output})
-    if (!file.empty() && file != "-") reports::RequireFolderOf(file);
+  CheckOutputs({{"--output", map},
+                {"--trajectory", options.trajectory},
+                {"--json", options.json, true},
+                {"--log", options.log_output},
+                {"--truth", options.truth_output}},
+               {{"log", options.drive.log}});
   MapResult result;
   std::optional<Judgement> judgement;
   if (options.is_driven) {

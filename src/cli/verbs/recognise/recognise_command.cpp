@@ -9,9 +9,9 @@
 #include <utility>
 
 #include "cli/exit_code.h"
+#include "cli/outputs.h"
 #include "cli/report_output.h"
 #include "hires/base/error.h"
-#include "hires/base/files/own_input.h"
 #include "hires/base/text.h"
 #include "hires/perception/pcd_file.h"
 #include "hires/perception/recogniser_config.h"
@@ -156,23 +156,6 @@ std::string TableText(const Recognition& seen, const RecogniseOptions& options) 
   return text + reports::FormatTable(rows);
 }
 
-void CheckOutputs(const RecogniseOptions& options) {
-  if (options.labels == "-") {
-    throw base::ConfigError("--labels -: a cloud is not printed; wanted a file, such as out.pcd");
-  }
-  for (const auto& [option, path] :
-       {std::pair("--json", options.json), std::pair("--labels", options.labels)}) {
-    if (path.empty() || path == "-") continue;
-    reports::RequireFolderOf(path);
-    base::RequireReplaceable(path);
-    base::RefuseOwnInput(option, path, "cloud", options.cloud);
-  }
-  if (!options.json.empty() && options.json == options.labels) {
-    throw base::ConfigError(
-        fmt::format("--json and --labels: both {}; name two files", options.json));
-  }
-}
-
 /// Other than one in which nothing was measured: there was nothing to look at.
 void CheckHasPoints(const perception::PointCloud& cloud, const std::string& path) {
   if (!cloud.points.empty()) return;
@@ -217,7 +200,8 @@ void AddRecogniseVerb(CLI::App* app, RecogniseOptions* o) {
 }
 
 int RunRecogniseVerb(const RecogniseOptions& options, const std::string& package_folder) {
-  CheckOutputs(options);
+  CheckOutputs({{"--json", options.json, true}, {"--labels", options.labels}},
+               {{"cloud", options.cloud}});
   perception::RecogniserConfig config = perception::ReadRecogniserConfig(
       options.config.empty() ? package_folder + "/config/recogniser.yaml" : options.config,
       options.objects);

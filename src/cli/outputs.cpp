@@ -1,0 +1,55 @@
+#include "cli/outputs.h"
+
+#include <fmt/format.h>
+
+#include <filesystem>
+
+#include "hires/base/error.h"
+#include "hires/base/files/own_input.h"
+#include "hires/base/text.h"
+#include "reports/text/report_json.h"
+
+namespace hires::cli {
+namespace {
+
+void CheckOutput(const VerbFile& output, const std::vector<VerbFile>& inputs) {
+  if (output.path == "-") {
+    throw base::ConfigError(
+        fmt::format("{} -: is not printed; wanted a file, or /dev/stdout", output.what));
+  }
+  reports::RequireFolderOf(output.path);
+  base::RequireReplaceable(output.path);
+  for (const VerbFile& input : inputs)
+    base::RefuseOwnInput(output.what, output.path, input.what, input.path);
+}
+
+bool AreSame(const std::string& a, const std::string& b) {
+  namespace fs = std::filesystem;
+  return fs::absolute(a).lexically_normal() == fs::absolute(b).lexically_normal();
+}
+
+}  // namespace
+
+void CheckOutputs(const std::vector<VerbFile>& outputs, const std::vector<VerbFile>& inputs) {
+  std::vector<std::string> wrong;
+  std::vector<VerbFile> files;
+  for (const VerbFile& output : outputs) {
+    if (output.path.empty() || (output.path == "-" && output.may_be_printed)) continue;
+    try {
+      CheckOutput(output, inputs);
+    } catch (const base::ConfigError& error) {
+      wrong.push_back(error.what());
+      continue;
+    }
+    for (const VerbFile& other : files) {
+      if (AreSame(other.path, output.path)) {
+        wrong.push_back(fmt::format("{} and {}: both {}; name two files", other.what, output.what,
+                                    output.path));
+      }
+    }
+    files.push_back(output);
+  }
+  if (!wrong.empty()) throw base::ConfigError(base::Join(wrong, "\n"));
+}
+
+}  // namespace hires::cli
