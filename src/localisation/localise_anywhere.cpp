@@ -10,6 +10,7 @@
 #include "localisation/beams.h"
 #include "localisation/likelihood_field.h"
 #include "localisation/other_places.h"
+#include "localisation/way_comparison.h"
 
 namespace hires::localisation {
 namespace {
@@ -21,9 +22,6 @@ enum Streams : std::uint64_t { kWayThere = 1, kFromEnd, kOtherPlaces };
 constexpr int kMostPlayed = 4;              // other places
 constexpr std::size_t kMostSketched = 100;  // scans
 constexpr std::size_t kMostCompared = 200;  // scans
-constexpr double kSignificant = 3.0;        // standard errors
-constexpr std::size_t kFewScans = 10;       // whose spread tells nothing
-constexpr double kSamePath = 1.0;           // [m] at most, in the median
 constexpr double kClearOf = 2.0;  // explained distances before its end, what a beam passes
 
 /// A scan and where a path says that the base was.
@@ -68,8 +66,8 @@ DriveSketch SketchOf(const std::vector<PlacedBeams>& scans) {
   return sketch;
 }
 
-/// Whether an obstacle of the map lies on the first `length` [m] of the way from a point to another,
-/// the point itself included.
+/// Whether an obstacle of the map lies on the first `length` [m] of the way from a point to
+/// another, the point itself included.
 bool IsObstacleBetween(const world::OccupancyGrid& map, const Vector2d& from, const Vector2d& to,
                        double length) {
   const Vector2d step = (to - from).normalized() * map.resolution;
@@ -118,50 +116,11 @@ class BeamJudge {
   double explained_distance_;
 };
 
-const TimedPose* PoseAt(const TimedPath& path, double time) {
-  const auto at = std::lower_bound(path.begin(), path.end(), time,
-                                   [](const TimedPose& pose, double t) { return pose.time < t; });
-  return at != path.end() && at->time == time ? &*at : nullptr;
-}
-
-double Mean(const std::vector<double>& values) {
-  double sum = 0.0;
-  for (const double value : values) sum += value;
-  return values.empty() ? 0.0 : sum / static_cast<double>(values.size());
-}
-
-/// A way that the drive may have taken, and of each scan that is compared the share of its beams
-/// that is explained there.
+/// A way that the drive may have taken, and what of the scans that are compared is explained there.
 struct Candidate {
   LocalisedLog localised;
-  std::vector<double> explained;
+  ExplainedShares explained;
 };
-
-/// Whether one explains so many more beams than the other that chance is no reason.
-bool IsSignificantlyBetter(const Candidate& a, const Candidate& b) {
-  const std::size_t count = a.explained.size();
-  if (count < kFewScans) return false;
-  std::vector<double> more;
-  for (std::size_t i = 0; i < count; ++i) more.push_back(a.explained[i] - b.explained[i]);
-  const double mean = Mean(more);
-  double squares = 0.0;
-  for (const double value : more) squares += (value - mean) * (value - mean);
-  const double error = std::sqrt(squares / static_cast<double>((count - 1) * count));
-  return mean > kSignificant * error;
-}
-
-/// Whether both say much the same, wherever both say something.
-bool IsSameWay(const TimedPath& a, const TimedPath& b) {
-  std::vector<double> off;
-  for (const TimedPose& pose : a) {
-    if (const TimedPose* other = PoseAt(b, pose.time))
-      off.push_back((other->X_MB.position() - pose.X_MB.position()).norm());
-  }
-  if (off.empty()) return false;
-  const auto middle = off.begin() + static_cast<std::ptrdiff_t>(off.size() / 2);
-  std::nth_element(off.begin(), middle, off.end());
-  return *middle <= kSamePath;
-}
 
 std::size_t ScanOf(const RobotLog& log, double time) {
   const auto at = std::find_if(log.scans.begin(), log.scans.end(),
@@ -286,7 +245,8 @@ LocalisedLog LocaliseAnywhere(const RobotLog& log, const world::OccupancyGrid& m
   const auto explain = [&](Candidate* candidate) {
     for (const PlacedBeams& scan : compared) {
       const TimedPose* pose = PoseAt(candidate->localised.path, scan.time);
-      candidate->explained.push_back(pose ? judge.Explained(scan, pose->X_MB) : 0.0);
+      candidate->explained.push_back(pose ? std::optional(judge.Explained(scan, pose->X_MB))
+                                          : std::nullopt);
     }
   };
   explain(&best);
@@ -295,17 +255,17 @@ LocalisedLog LocaliseAnywhere(const RobotLog& log, const world::OccupancyGrid& m
     const TimedPose there{first.time, others[i] * first.X_MB};
     Candidate other{drives.Through(there, way, rng.Fork(kOtherPlaces + i)), {}};
     explain(&other);
-    if (Mean(other.explained) > Mean(best.explained)) std::swap(best, other);
+    if (MeanExplained(other.explained) > MeanExplained(best.explained)) std::swap(best, other);
     behind.push_back(std::move(other));
   }
   for (const Candidate& other : behind) {
     const TimedPath& other_way = other.localised.path;
     const bool is_rival = !other_way.empty() && !IsSameWay(best.localised.path, other_way) &&
-                          !IsSignificantlyBetter(best, other);
-    const double explained = Mean(other.explained);
+                          !IsSignificantlyBetter(best.explained, other.explained);
+    const double explained = MeanExplained(other.explained);
     if (!is_rival || (best.localised.rival && best.localised.rival->explained >= explained))
       continue;
-    best.localised.rival = Rival{other_way.back().X_MB, explained, Mean(best.explained)};
+    best.localised.rival = Rival{other_way.back().X_MB, explained, MeanExplained(best.explained)};
   }
   return best.localised;
 }

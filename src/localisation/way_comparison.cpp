@@ -1,0 +1,58 @@
+#include "localisation/way_comparison.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+
+namespace hires::localisation {
+namespace {
+
+constexpr double kSignificant = 3.0;   // standard errors
+constexpr std::size_t kFewScans = 10;  // whose spread tells nothing
+constexpr double kSamePath = 1.0;      // [m] at most, in the median
+
+double Mean(const std::vector<double>& values) {
+  double sum = 0.0;
+  for (const double value : values) sum += value;
+  return values.empty() ? 0.0 : sum / static_cast<double>(values.size());
+}
+
+}  // namespace
+
+const TimedPose* PoseAt(const TimedPath& path, double time) {
+  const auto at = std::lower_bound(path.begin(), path.end(), time,
+                                   [](const TimedPose& pose, double t) { return pose.time < t; });
+  return at != path.end() && at->time == time ? &*at : nullptr;
+}
+
+double MeanExplained(const ExplainedShares& shares) {
+  std::vector<double> values;
+  for (const std::optional<double>& share : shares) values.push_back(share.value_or(0.0));
+  return Mean(values);
+}
+
+bool IsSignificantlyBetter(const ExplainedShares& a, const ExplainedShares& b) {
+  const std::size_t count = a.size();
+  if (count < kFewScans) return false;
+  std::vector<double> more;
+  for (std::size_t i = 0; i < count; ++i) more.push_back(a[i].value_or(0.0) - b[i].value_or(0.0));
+  const double mean = Mean(more);
+  double squares = 0.0;
+  for (const double value : more) squares += (value - mean) * (value - mean);
+  const double error = std::sqrt(squares / static_cast<double>((count - 1) * count));
+  return mean > kSignificant * error;
+}
+
+bool IsSameWay(const TimedPath& a, const TimedPath& b) {
+  std::vector<double> off;
+  for (const TimedPose& pose : a) {
+    if (const TimedPose* other = PoseAt(b, pose.time))
+      off.push_back((other->X_MB.position() - pose.X_MB.position()).norm());
+  }
+  if (off.empty()) return false;
+  const auto middle = off.begin() + static_cast<std::ptrdiff_t>(off.size() / 2);
+  std::nth_element(off.begin(), middle, off.end());
+  return *middle <= kSamePath;
+}
+
+}  // namespace hires::localisation

@@ -1,0 +1,26 @@
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "hires/localisation/robot_log.h"
+
+namespace hires::localisation {
+
+/// Of each scan that is compared, the share in [0, 1] of its beams that a way explains; nothing:
+/// the way has no pose for that scan.
+using ExplainedShares = std::vector<std::optional<double>>;
+
+/// The pose for exactly that time; null: there is none.
+const TimedPose* PoseAt(const TimedPath& path, double time);
+
+double MeanExplained(const ExplainedShares& shares);
+
+/// Whether one way explains so many more beams than the other that chance is no reason.
+/// @pre both are of the same scans
+bool IsSignificantlyBetter(const ExplainedShares& a, const ExplainedShares& b);
+
+/// Whether both ways say much the same, wherever both say something.
+bool IsSameWay(const TimedPath& a, const TimedPath& b);
+
+}  // namespace hires::localisation
