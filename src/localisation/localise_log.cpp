@@ -57,6 +57,13 @@ bool IsSeen(const Moment& a, const Moment& b) {
   return std::abs(b.way - a.way) - std::abs(b.way_seen - a.way_seen) < kUnseen;
 }
 
+/// Whether what was contradicted between two moments was believed for long enough to be more than
+/// what the odometry made of the belief before a pause.
+bool IsHeld(const Moment& a, const Moment& b) {
+  constexpr double kHeld = 1.0;  // [m]
+  return std::abs(b.way_seen - a.way_seen) >= kHeld;
+}
+
 class LogLocaliser {
  public:
   LogLocaliser(const RobotLog& log, MonteCarloLocalisation filter)
@@ -132,11 +139,18 @@ void LogLocaliser::JudgePath(JudgedFrom from) {
   for (Moment& moment : moments_)
     if (moment.is_in_path) poses.push_back({&moment, localised_.path[next++]});
   if (from == JudgedFrom::kEnd) std::reverse(poses.begin(), poses.end());
-  const Judged *before = nullptr, *last_kept = nullptr;
+  const Judged *before = nullptr, *last_kept = nullptr, *since_leap = nullptr;
   bool is_kept = true;  // the one before
   for (const Judged& pose : poses) {
-    if (before && IsSeen(*pose.moment, *before->moment) && !DoAgree(pose, *before))
-      is_kept = DoAgree(pose, *last_kept);
+    if (before) {
+      const bool is_seen = IsSeen(*pose.moment, *before->moment), agrees = DoAgree(pose, *before);
+      if (is_seen && !agrees) {
+        is_kept = DoAgree(pose, *last_kept);
+        since_leap = &pose;
+      } else if (!is_seen && !is_kept) {
+        is_kept = !agrees || !IsHeld(*since_leap->moment, *before->moment);
+      }
+    }
     before = &pose;
     pose.moment->is_in_path = is_kept;
     if (is_kept) last_kept = &pose;

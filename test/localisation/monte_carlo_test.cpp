@@ -585,6 +585,62 @@ TEST(LocaliseLogTest, PosesFromBeforeTheRobotWasFoundElsewhereAreLeftOut) {
   EXPECT_GT(num_tested, 0);
 }
 
+void Blind(double from, double until, RobotLog* log) {
+  for (RobotLog::Scan& scan : log->scans) {
+    if (scan.time >= from && scan.time < until)
+      scan.reading.ranges.assign(scan.reading.ranges.size(), 0.0f);
+  }
+}
+
+/// People stand all round: nothing is explained, until the robot looks everywhere.
+void Surround(double from, double until, RobotLog* log) {
+  for (RobotLog::Scan& scan : log->scans) {
+    if (scan.time < from || scan.time >= until) continue;
+    for (float& range : scan.reading.ranges) range = std::min(range, 0.5f);
+  }
+}
+
+/// Carried on while the laser is blind, and later once more while it is not.
+TEST(LocaliseLogTest, PosesFromBeforeAPauseAreNotContradictedByThoseBehindIt) {
+  int num_tested = 0;
+  for (int seed = 1; seed <= hires::test_support::Rounds(8); ++seed) {
+    SCOPED_TRACE(seed);
+    SimulatedDrive drive = Drive(seed, RoomsWithShelf());
+    CarryOn(52.0, 70.0, &drive);
+    CarryOn(18.0, 30.0, &drive);
+    Blind(8.0, 18.0, &drive.log);
+    Surround(18.0, 22.0, &drive.log);
+    const LocalisedLog found =
+        LocaliseLog(drive.log,
+                    MonteCarloLocalisation(RoomsWithShelf(), ParamsAt(drive.truth.front().X_MB),
+                                           base::Rng(seed)),
+                    "localising");
+    const double off = (found.last.X_MB.position() - drive.truth.back().X_MB.position()).norm();
+    if (found.num_contradicted == 0 || off > 0.3) continue;
+    ++num_tested;
+    const auto is_before = [](const auto& stamped) { return stamped.time < 8.0; };
+    const auto count = [&](const auto& all) {
+      return static_cast<double>(std::count_if(all.begin(), all.end(), is_before));
+    };
+    EXPECT_GT(count(found.path), 0.9 * count(drive.truth));
+    EXPECT_EQ(ShareWrong(found.path, drive.truth), 0.0);
+  }
+  EXPECT_GT(num_tested, 0);
+}
+
+/// Found in the wrong room first, and for some metres behind the pause still believed to be there.
+TEST(LocaliseLogTest, PosesThatAgreeOverAPauseWithContradictedOnesAreLeftOutWithThem) {
+  constexpr double kPause = 12.0, kEndOfPause = 20.0;  // [s]
+  SimulatedDrive drive = Drive(837);
+  Blind(kPause, kEndOfPause, &drive.log);
+  const LocalisedLog found = LocaliseFromAnywhere(drive.log, TwoRooms(), 837);
+  ASSERT_LT((found.last.X_MB.position() - drive.truth.back().X_MB.position()).norm(), 0.3);
+  ASSERT_LT(*found.localised_after, kPause) << "nothing was tested";
+  ASSERT_GT(found.num_contradicted, 0) << "nothing was tested";
+  EXPECT_GT(found.path.front().time, kEndOfPause);
+  EXPECT_EQ(ShareWrong(found.path, drive.truth), 0.0);
+}
+
 /// Of a map that lacks the right room, poses in it are guesses.
 TEST(LocaliseLogTest, AMapOfHalfOfTheDriveIsPartialOrDoubtful) {
   OccupancyGrid half = RoomsWithShelf();

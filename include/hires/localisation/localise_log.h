@@ -69,7 +69,10 @@ std::string WhyPartial(const LocalisedLog& localised);
 /// A filter that was wrong and finds out goes elsewhere at once, where the odometry did not go. The
 /// poses of the path are therefore judged from its end: what the last ones say, carried back by the
 /// odometry, is what those before such a leap must agree with (within 1 m and a tenth of the way
-/// between, 2 m at most, and 0.5 rad); those that do not are left out. Or from its start.
+/// between, 2 m at most, and 0.5 rad); those that do not are left out. Or from its start. Where
+/// 0.5 m or more were driven while the laser told nothing, a place is found anew, which contradicts
+/// nobody: poses beyond such a pause are left out only where they agree with what was contradicted
+/// over 1 m or more on this side of it.
 /// @param task        what is done, for those who wait: "localising drive.log".
 /// @param first_scan  those before are passed over.  @pre less than the log's scans
 LocalisedLog LocaliseLog(const RobotLog& log, MonteCarloLocalisation filter,
