@@ -4,17 +4,27 @@
 #include <cmath>
 #include <cstddef>
 
+#include "hires/geometry/angles.h"
+
 namespace hires::localisation {
 namespace {
 
 constexpr double kSignificant = 3.0;   // standard errors
 constexpr std::size_t kFewScans = 10;  // whose spread tells nothing
 constexpr double kSamePath = 1.0;      // [m] at most, in the median
+constexpr double kSameHeading = 0.5;   // [rad] likewise
 
 double Mean(const std::vector<double>& values) {
   double sum = 0.0;
   for (const double value : values) sum += value;
   return values.empty() ? 0.0 : sum / static_cast<double>(values.size());
+}
+
+/// @pre there are some; they change their order
+double Median(std::vector<double>* values) {
+  const auto middle = values->begin() + static_cast<std::ptrdiff_t>(values->size() / 2);
+  std::nth_element(values->begin(), middle, values->end());
+  return *middle;
 }
 
 }  // namespace
@@ -44,15 +54,14 @@ bool IsSignificantlyBetter(const ExplainedShares& a, const ExplainedShares& b) {
 }
 
 bool IsSameWay(const TimedPath& a, const TimedPath& b) {
-  std::vector<double> off;
+  std::vector<double> off, turned;
   for (const TimedPose& pose : a) {
-    if (const TimedPose* other = PoseAt(b, pose.time))
-      off.push_back((other->X_MB.position() - pose.X_MB.position()).norm());
+    const TimedPose* other = PoseAt(b, pose.time);
+    if (!other) continue;
+    off.push_back((other->X_MB.position() - pose.X_MB.position()).norm());
+    turned.push_back(std::abs(geometry::WrapToPi(other->X_MB.yaw - pose.X_MB.yaw)));
   }
-  if (off.empty()) return false;
-  const auto middle = off.begin() + static_cast<std::ptrdiff_t>(off.size() / 2);
-  std::nth_element(off.begin(), middle, off.end());
-  return *middle <= kSamePath;
+  return !off.empty() && Median(&off) <= kSamePath && Median(&turned) <= kSameHeading;
 }
 
 }  // namespace hires::localisation

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "hires/geometry/angles.h"
 #include "hires/localisation/localise_log.h"
 #include "support/rounds.h"
 #include "support/simulated_drive.h"
@@ -128,6 +129,32 @@ TEST(LocaliseAnywhereTest, APlanThatIsTheSameTurnedByHalfHasARival) {
     EXPECT_GE(localised.rival->explained_here, localised.rival->explained);
     EXPECT_GT(localised.rival->explained, 0.9);
   }
+}
+
+/// Turned by half about its middle a drive there is hardly elsewhere, but heads the other way.
+TEST(LocaliseAnywhereTest, InTheMiddleOfARoomTheOtherHeadingIsARival) {
+  OccupancyGrid room = SameTurnedByHalf();
+  for (int row = 2; row < 158; ++row)
+    for (int column = 2; column < 238; ++column)
+      room.cells[static_cast<std::size_t>(row) * room.width + column] = world::Cell::kFree;
+  const std::vector<Vector2d> course{{6.0, 4.0}, {6.3, 4.0}, {6.0, 4.3}, {5.8, 3.9}, {6.2, 3.8},
+                                     {6.1, 4.2}, {5.9, 4.1}, {6.0, 3.8}, {6.2, 4.1}, {6.0, 4.0}};
+  MonteCarloParams few;  // particles, so that the filter alone decides
+  few.min_particles = 100;
+  few.max_particles = 500;
+  few.global_particles = 3000;
+  int num_good = 0;
+  for (int seed = 1; seed <= test_support::Rounds(16); ++seed) {
+    SCOPED_TRACE(seed);
+    const SimulatedDrive drive = test_support::DriveThrough(room, course, {}, base::Rng(seed));
+    const LocalisedLog localised = Localise(drive, room, seed, few);
+    if (localised.last.status != LocalisationStatus::kGood) continue;
+    ++num_good;
+    ASSERT_TRUE(localised.rival.has_value());
+    const double turned = localised.rival->X_MB.yaw - localised.path.back().X_MB.yaw;
+    EXPECT_GT(std::abs(geometry::WrapToPi(turned)), 2.5);
+  }
+  EXPECT_GT(num_good, 0) << "nothing was tested";
 }
 
 TEST(LocaliseAnywhereTest, OneCupboardTellsTheHalvesApart) {
