@@ -19,9 +19,10 @@ using Eigen::Vector2d;
 using geometry::Pose2;
 
 enum Streams : std::uint64_t { kWayThere = 1, kFromEnd, kOtherPlaces };
-constexpr int kMostPlayed = 4;              // other places
-constexpr std::size_t kMostSketched = 100;  // scans
-constexpr std::size_t kMostCompared = 200;  // scans
+constexpr int kMostPlayed = 4;                                // other places
+constexpr std::size_t kMostSketched = 100;                    // scans
+constexpr std::size_t kMostCompared = 200;                    // scans
+constexpr double kSketchedApart = 0.1, kComparedApart = 0.5;  // [m] and [rad], from scan to scan
 constexpr double kClearOf = 2.0;  // explained distances before its end, what a beam passes
 
 /// A scan and where a path says that the base was.
@@ -52,6 +53,23 @@ std::vector<PlacedBeams> PlacedScans(const RobotLog& log, const TimedPath& path,
       placed.push_back(std::move(beams));
   }
   return placed;
+}
+
+/// Scans of a path for its sketch.
+std::vector<PlacedBeams> SketchedScans(const RobotLog& log, const TimedPath& path,
+                                       const MonteCarloParams& params) {
+  return PlacedScans(log, PosesApart(path, kSketchedApart, kSketchedApart), params, kMostSketched);
+}
+
+/// Scans of the whole log, by whose beams the ways that it may have gone are compared; their poses
+/// are those of the odometry.
+std::vector<PlacedBeams> ComparedScans(const RobotLog& log, const MonteCarloParams& params) {
+  TimedPath odometry;
+  for (const RobotLog::Scan& scan : log.scans)
+    if (const std::optional<Pose2> X_OB = OdometryOf(log, scan))
+      odometry.push_back({scan.time, *X_OB});
+  return PlacedScans(log, PosesApart(odometry, kComparedApart, kComparedApart), params,
+                     kMostCompared);
 }
 
 Vector2d EndOf(const Beams& beams, std::size_t k) { return {beams.x[k], beams.y[k]}; }
@@ -236,11 +254,10 @@ LocalisedLog LocaliseAnywhere(const RobotLog& log, const world::OccupancyGrid& m
   const TimedPose first = best.localised.path.front();
   drives.AddWayTo(first, way, rng.Fork(kWayThere), &best.localised);
   const std::vector<Pose2> others =
-      FindOtherPlaces(map, SketchOf(PlacedScans(log, best.localised.path, params, kMostSketched)),
+      FindOtherPlaces(map, SketchOf(SketchedScans(log, best.localised.path, params)),
                       params.explained_distance, kMostPlayed, task + ": other places");
   if (others.empty()) return best.localised;
-  const std::vector<PlacedBeams> compared =
-      PlacedScans(log, best.localised.path, params, kMostCompared);
+  const std::vector<PlacedBeams> compared = ComparedScans(log, params);
   const BeamJudge judge(map, params);
   const auto explain = [&](Candidate* candidate) {
     for (const PlacedBeams& scan : compared) {

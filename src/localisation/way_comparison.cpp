@@ -10,6 +10,7 @@ namespace hires::localisation {
 namespace {
 
 constexpr double kSignificant = 3.0;   // standard errors
+constexpr double kLeastMore = 0.01;    // of the beams
 constexpr std::size_t kFewScans = 10;  // whose spread tells nothing
 constexpr double kSamePath = 1.0;      // [m] at most, in the median
 constexpr double kSameHeading = 0.5;   // [rad] likewise
@@ -41,6 +42,19 @@ double MeanExplained(const ExplainedShares& shares) {
   return Mean(values);
 }
 
+TimedPath PosesApart(const TimedPath& path, double distance, double turn) {
+  TimedPath apart;
+  for (const TimedPose& pose : path) {
+    if (!apart.empty()) {
+      const geometry::Pose2 step = apart.back().X_MB.Inverse() * pose.X_MB;
+      const bool has_turned = std::abs(geometry::WrapToPi(step.yaw)) >= turn;
+      if (step.position().norm() < distance && !has_turned) continue;
+    }
+    apart.push_back(pose);
+  }
+  return apart;
+}
+
 bool IsSignificantlyBetter(const ExplainedShares& a, const ExplainedShares& b) {
   const std::size_t count = a.size();
   if (count < kFewScans) return false;
@@ -50,7 +64,7 @@ bool IsSignificantlyBetter(const ExplainedShares& a, const ExplainedShares& b) {
   double squares = 0.0;
   for (const double value : more) squares += (value - mean) * (value - mean);
   const double error = std::sqrt(squares / static_cast<double>((count - 1) * count));
-  return mean > kSignificant * error;
+  return mean >= kLeastMore && mean > kSignificant * error;
 }
 
 bool IsSameWay(const TimedPath& a, const TimedPath& b) {

@@ -16,7 +16,13 @@ const TimedPose* PoseAt(const TimedPath& path, double time);
 
 double MeanExplained(const ExplainedShares& shares);
 
-/// Whether one way explains so many more beams than the other that chance is no reason.
+/// The first pose of a path, and each one that is `distance` [m] or `turn` [rad] from the last that
+/// was taken: views of their own, however long the robot stood somewhere.
+TimedPath PosesApart(const TimedPath& path, double distance, double turn);
+
+/// Whether one way explains so many more beams than the other that chance is no reason: at least
+/// 1 %, and more than 3 standard errors of the mean over the scans; of fewer than 10 scans never.
+/// Scans of one view err alike and must not be counted as several.
 /// @pre both are of the same scans
 bool IsSignificantlyBetter(const ExplainedShares& a, const ExplainedShares& b);
 

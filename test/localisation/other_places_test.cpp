@@ -178,6 +178,33 @@ TEST(LocaliseAnywhereTest, OneCupboardTellsTheHalvesApart) {
   EXPECT_GT(num_wrong_alone, 0) << "nothing was tested";
 }
 
+/// Lets the robot stand where it came to, for so many scans more.
+void Stand(const OccupancyGrid& grid, int num_scans, SimulatedDrive* drive) {
+  base::Rng rng(99);
+  RobotLog::Odometry odometry = drive->log.odometry.back();
+  RobotLog::Scan scan = drive->log.scans.back();
+  TimedPose truth = drive->truth.back();
+  for (int i = 1; i <= num_scans; ++i) {
+    odometry.time = scan.time = truth.time = drive->log.odometry.back().time + 0.2;
+    scan.reading = test_support::ScanInGrid(grid, truth.X_MB * scan.X_BL, {}, &rng);
+    drive->log.odometry.push_back(odometry);
+    drive->log.scans.push_back(scan);
+    drive->truth.push_back(truth);
+  }
+}
+
+/// A post is near where the robot stands at last, and hardly seen from anywhere else.
+TEST(LocaliseAnywhereTest, OneViewDoesNotTellTheHalvesApartHoweverLongTheRobotStandsThere) {
+  OccupancyGrid map = SameTurnedByHalf();
+  Fill(60, 144, 62, 146, &map);
+  for (int seed = 1; seed <= test_support::Rounds(4); ++seed) {
+    SCOPED_TRACE(seed);
+    SimulatedDrive drive = DriveIn(map, seed);
+    Stand(map, 1000, &drive);
+    EXPECT_TRUE(Localise(drive, map, seed).rival.has_value());
+  }
+}
+
 TEST(LocaliseAnywhereTest, WhereNothingElseFitsTheFiltersWordStaysAndTheWayThereIsAdded) {
   const OccupancyGrid map = test_support::RoomsWithShelf();
   const SimulatedDrive drive =
