@@ -272,17 +272,16 @@ LocalisedLog LocaliseAnywhere(const RobotLog& log, const world::OccupancyGrid& m
     const TimedPose there{first.time, others[i] * first.X_MB};
     Candidate other{drives.Through(there, way, rng.Fork(kOtherPlaces + i)), {}};
     explain(&other);
-    if (MeanExplained(other.explained) > MeanExplained(best.explained)) std::swap(best, other);
+    if (IsBetter(other.explained, best.explained)) std::swap(best, other);
     behind.push_back(std::move(other));
   }
   for (const Candidate& other : behind) {
     const TimedPath& other_way = other.localised.path;
     const bool is_rival = !other_way.empty() && !IsSameWay(best.localised.path, other_way) &&
                           !IsSignificantlyBetter(best.explained, other.explained);
-    const double explained = MeanExplained(other.explained);
-    if (!is_rival || (best.localised.rival && best.localised.rival->explained >= explained))
-      continue;
-    best.localised.rival = Rival{other_way.back().X_MB, explained, MeanExplained(best.explained)};
+    const MeanShares mean = MeanExplained(best.explained, other.explained);
+    if (!is_rival || (best.localised.rival && best.localised.rival->explained >= mean.b)) continue;
+    best.localised.rival = Rival{other_way.back().X_MB, mean.b, mean.a};
   }
   return best.localised;
 }

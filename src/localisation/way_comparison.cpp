@@ -12,6 +12,7 @@ namespace {
 constexpr double kSignificant = 3.0;   // standard errors
 constexpr double kLeastMore = 0.01;    // of the beams
 constexpr std::size_t kFewScans = 10;  // whose spread tells nothing
+constexpr double kFewerPoses = 0.2;    // of the scans
 constexpr double kSamePath = 1.0;      // [m] at most, in the median
 constexpr double kSameHeading = 0.5;   // [rad] likewise
 
@@ -28,6 +29,26 @@ double Median(std::vector<double>* values) {
   return *middle;
 }
 
+double ShareWithPoses(const ExplainedShares& shares) {
+  const auto count = std::count_if(shares.begin(), shares.end(),
+                                   [](const std::optional<double>& share) { return share; });
+  return shares.empty() ? 0.0 : static_cast<double>(count) / static_cast<double>(shares.size());
+}
+
+/// Of the scans that both ways have poses for.
+bool ExplainsMore(const ExplainedShares& a, const ExplainedShares& b) {
+  std::vector<double> more;
+  for (std::size_t i = 0; i < a.size(); ++i)
+    if (a[i] && b[i]) more.push_back(*a[i] - *b[i]);
+  const std::size_t count = more.size();
+  if (count < kFewScans) return false;
+  const double mean = Mean(more);
+  double squares = 0.0;
+  for (const double value : more) squares += (value - mean) * (value - mean);
+  const double error = std::sqrt(squares / static_cast<double>((count - 1) * count));
+  return mean >= kLeastMore && mean > kSignificant * error;
+}
+
 }  // namespace
 
 const TimedPose* PoseAt(const TimedPath& path, double time) {
@@ -36,10 +57,17 @@ const TimedPose* PoseAt(const TimedPath& path, double time) {
   return at != path.end() && at->time == time ? &*at : nullptr;
 }
 
-double MeanExplained(const ExplainedShares& shares) {
-  std::vector<double> values;
-  for (const std::optional<double>& share : shares) values.push_back(share.value_or(0.0));
-  return Mean(values);
+MeanShares MeanExplained(const ExplainedShares& a, const ExplainedShares& b) {
+  MeanShares mean;
+  int count = 0;
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    if (!a[i] || !b[i]) continue;
+    mean.a += *a[i];
+    mean.b += *b[i];
+    ++count;
+  }
+  if (count > 0) mean = {mean.a / count, mean.b / count};
+  return mean;
 }
 
 TimedPath PosesApart(const TimedPath& path, double distance, double turn) {
@@ -55,16 +83,17 @@ TimedPath PosesApart(const TimedPath& path, double distance, double turn) {
   return apart;
 }
 
+bool IsBetter(const ExplainedShares& a, const ExplainedShares& b) {
+  const double more_poses = ShareWithPoses(a) - ShareWithPoses(b);
+  if (std::abs(more_poses) > kFewerPoses) return more_poses > 0.0;
+  const MeanShares mean = MeanExplained(a, b);
+  return mean.a > mean.b;
+}
+
 bool IsSignificantlyBetter(const ExplainedShares& a, const ExplainedShares& b) {
-  const std::size_t count = a.size();
-  if (count < kFewScans) return false;
-  std::vector<double> more;
-  for (std::size_t i = 0; i < count; ++i) more.push_back(a[i].value_or(0.0) - b[i].value_or(0.0));
-  const double mean = Mean(more);
-  double squares = 0.0;
-  for (const double value : more) squares += (value - mean) * (value - mean);
-  const double error = std::sqrt(squares / static_cast<double>((count - 1) * count));
-  return mean >= kLeastMore && mean > kSignificant * error;
+  const double more_poses = ShareWithPoses(a) - ShareWithPoses(b);
+  if (more_poses > kFewerPoses) return !ExplainsMore(b, a);
+  return more_poses >= -kFewerPoses && ExplainsMore(a, b);
 }
 
 bool IsSameWay(const TimedPath& a, const TimedPath& b) {

@@ -14,14 +14,26 @@ using ExplainedShares = std::vector<std::optional<double>>;
 /// The pose for exactly that time; null: there is none.
 const TimedPose* PoseAt(const TimedPath& path, double time);
 
-double MeanExplained(const ExplainedShares& shares);
+/// Means over the scans that both of two ways have poses for; 0 where there are none.
+struct MeanShares {
+  double a{0.0}, b{0.0};
+};
+/// @pre both are of the same scans
+MeanShares MeanExplained(const ExplainedShares& a, const ExplainedShares& b);
 
 /// The first pose of a path, and each one that is `distance` [m] or `turn` [rad] from the last that
 /// was taken: views of their own, however long the robot stood somewhere.
 TimedPath PosesApart(const TimedPath& path, double distance, double turn);
 
-/// Whether one way explains so many more beams than the other that chance is no reason: at least
-/// 1 %, and more than 3 standard errors of the mean over the scans; of fewer than 10 scans never.
+/// Which of two ways is the more likely one: that with poses for more of the scans, if it is more
+/// than a fifth of them, else that which explains more beams of the scans that both have poses for.
+/// @pre both are of the same scans
+bool IsBetter(const ExplainedShares& a, const ExplainedShares& b);
+
+/// Whether one way is so much better than the other that chance is no reason. Of the scans that
+/// both have poses for it explains more beams, at least 1 % and more than 3 standard errors of the
+/// mean; of fewer than 10 scans never. Or it has poses for more of the scans, more than a fifth of
+/// them. Where each is the better one by one of these, neither is.
 /// Scans of one view err alike and must not be counted as several.
 /// @pre both are of the same scans
 bool IsSignificantlyBetter(const ExplainedShares& a, const ExplainedShares& b);

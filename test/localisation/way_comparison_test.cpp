@@ -19,6 +19,12 @@ ExplainedShares SharesAbout(double mean, std::size_t count, std::uint64_t seed) 
   return shares;
 }
 
+/// Without each of so many.
+ExplainedShares Without(std::size_t each, ExplainedShares shares) {
+  for (std::size_t i = 0; i < shares.size(); i += each) shares[i].reset();
+  return shares;
+}
+
 TimedPath TurnOnTheSpot(double yaw) {
   TimedPath path;
   for (int i = 0; i < 50; ++i)
@@ -64,6 +70,44 @@ TEST(IsSignificantlyBetterTest, ADifferenceThatIsSmallIsNoneHoweverSteadyItIs) {
 TEST(IsSignificantlyBetterTest, AFewScansTellNothing) {
   EXPECT_FALSE(IsSignificantlyBetter(SharesAbout(0.95, 9, 1), SharesAbout(0.5, 9, 2)));
   EXPECT_TRUE(IsSignificantlyBetter(SharesAbout(0.95, 10, 1), SharesAbout(0.5, 10, 2)));
+}
+
+TEST(IsSignificantlyBetterTest, AMissingPoseIsNoBeamThatIsNotExplained) {
+  const ExplainedShares a = SharesAbout(0.95, 200, 1), b = SharesAbout(0.95, 200, 2);
+  EXPECT_FALSE(IsSignificantlyBetter(a, Without(10, b)));
+  EXPECT_FALSE(IsSignificantlyBetter(Without(10, a), b));
+  EXPECT_TRUE(IsSignificantlyBetter(Without(10, a), SharesAbout(0.93, 200, 2)));
+}
+
+TEST(IsSignificantlyBetterTest, AWayThatLacksMorePosesThanAFifthIsWorse) {
+  const ExplainedShares a = SharesAbout(0.95, 200, 1), b = SharesAbout(0.95, 200, 2);
+  EXPECT_TRUE(IsSignificantlyBetter(a, Without(4, b)));
+  EXPECT_FALSE(IsSignificantlyBetter(Without(4, b), a));
+  EXPECT_FALSE(IsSignificantlyBetter(Without(4, a), Without(4, b)));
+}
+
+TEST(IsSignificantlyBetterTest, MorePosesAndMoreExplainedBeamsOfTheOtherDecideNothing) {
+  const ExplainedShares whole = SharesAbout(0.93, 200, 1);
+  const ExplainedShares half = Without(2, SharesAbout(0.95, 200, 2));
+  EXPECT_FALSE(IsSignificantlyBetter(whole, half));
+  EXPECT_FALSE(IsSignificantlyBetter(half, whole));
+}
+
+TEST(IsBetterTest, ManyMorePosesComeBeforeMoreExplainedBeams) {
+  const ExplainedShares more = SharesAbout(0.95, 200, 1), fewer = SharesAbout(0.93, 200, 2);
+  EXPECT_TRUE(IsBetter(more, fewer));
+  EXPECT_TRUE(IsBetter(Without(10, more), fewer));
+  EXPECT_FALSE(IsBetter(fewer, Without(10, more)));
+  EXPECT_FALSE(IsBetter(Without(2, more), fewer));
+  EXPECT_TRUE(IsBetter(fewer, Without(2, more)));
+  EXPECT_FALSE(IsBetter(more, more));
+}
+
+TEST(MeanExplainedTest, ScansWithoutAPoseOfOneAreLeftOut) {
+  const MeanShares mean = MeanExplained({0.9, {}, 0.7, 0.1}, {0.8, 0.5, 0.6, {}});
+  EXPECT_NEAR(mean.a, 0.8, 1e-12);
+  EXPECT_NEAR(mean.b, 0.7, 1e-12);
+  EXPECT_EQ(MeanExplained({{}, 0.5}, {0.5, {}}).a, 0.0);
 }
 
 }  // namespace
