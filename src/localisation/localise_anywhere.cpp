@@ -2,6 +2,7 @@
 #include <cmath>
 #include <cstdint>
 #include <optional>
+#include <set>
 #include <string>
 #include <utility>
 #include <vector>
@@ -152,11 +153,45 @@ RobotLog Reversed(const RobotLog& log, std::size_t last_scan) {
   for (std::size_t i = last_scan + 1; i-- > 0;) {
     RobotLog::Scan scan = log.scans[i];
     scan.X_OB = OdometryOf(log, scan);
-    if (!scan.X_OB) continue;
     scan.time = -scan.time;
     reversed.scans.push_back(std::move(scan));
   }
   return reversed;
+}
+
+/// Times of poses that were left out on the way forwards or backwards, and have no others instead.
+/// @param first  [s] of the pose from which it was played backwards
+std::vector<double> ContradictedIn(const LocalisedLog& localised, const LocalisedLog& back,
+                                   double first) {
+  std::set<double> times(localised.contradicted.begin(), localised.contradicted.end());
+  for (const double time : back.contradicted)
+    if (-time < first) times.insert(-time);
+  std::vector<double> contradicted;
+  for (const double time : times)
+    if (!PoseAt(localised.path, time)) contradicted.push_back(time);
+  return contradicted;
+}
+
+int NumJudged(const LocalisedLog& localised) {
+  int count = 0;
+  for (const auto& [outcome, times] : localised.outcomes)
+    if (!IsBad(outcome)) count += times;
+  return count;
+}
+
+/// Counts the scans, too, that were played backwards.
+/// @param after  [s] from the log's first scan to that from which it was played backwards
+void AddCounts(const LocalisedLog& back, double after, LocalisedLog* localised) {
+  const int here = NumJudged(*localised), there = NumJudged(back);
+  if (here + there > 0) {
+    localised->explained = (here * localised->explained + there * back.explained) / (here + there);
+  }
+  for (const auto& [outcome, times] : back.outcomes) localised->outcomes[outcome] += times;
+  for (const auto& [status, times] : back.statuses) localised->statuses[status] += times;
+  localised->num_without_odometry += back.num_without_odometry;
+  localised->num_relocations += back.num_relocations;
+  if (!localised->relocated_after && back.relocated_after)
+    localised->relocated_after = after - *back.relocated_after;
 }
 
 /// Everything that plays a drive from a pose on the way.
@@ -173,52 +208,58 @@ struct Drives {
     return there;
   }
 
-  /// The drive until a scan, backwards from where the robot was then; its times are negative.
+  /// The drive until a scan, backwards from where the robot was then; its times are negative, and
+  /// that scan is in no count.
   LocalisedLog Back(std::size_t scan, const Pose2& X_MB, const base::Rng& rng) const {
     return LocaliseLog(Reversed(log, scan), At(X_MB, rng), task + ": backwards", 0,
-                       JudgedFrom::kStart);
+                       JudgedFrom::kStart, 1);
   }
 
   /// Puts before the path how the robot came to its first pose.
   /// @param way  [m] of the whole drive, as LocalisedLog::way.
-  void AddWayTo(const TimedPose& first, double way, const base::Rng& rng,
-                LocalisedLog* localised) const {
-    const std::size_t scan = ScanOf(log, first.time);
-    double known = localised->way_known * localised->way;
-    if (scan > 0) {
-      const LocalisedLog back = Back(scan, first.X_MB, rng);
-      TimedPath path;
-      for (auto pose = back.path.rbegin(); pose != back.path.rend(); ++pose)
-        if (-pose->time < first.time) path.push_back({-pose->time, pose->X_MB});
-      const int num_added = static_cast<int>(path.size());
-      localised->num_contradicted = std::max(0, localised->num_contradicted - num_added);
-      path.insert(path.end(), localised->path.begin(), localised->path.end());
-      localised->path = std::move(path);
-      known += back.way_known * back.way;
-    }
+  /// @return what was played backwards
+  LocalisedLog AddWayTo(const TimedPose& first, double way, const base::Rng& rng,
+                        LocalisedLog* localised) const {
+    LocalisedLog back = Back(ScanOf(log, first.time), first.X_MB, rng);
+    TimedPath path;
+    for (auto pose = back.path.rbegin(); pose != back.path.rend(); ++pose)
+      if (-pose->time < first.time) path.push_back({-pose->time, pose->X_MB});
+    path.insert(path.end(), localised->path.begin(), localised->path.end());
+    localised->path = std::move(path);
+    localised->contradicted = ContradictedIn(*localised, back, first.time);
+    const double known = localised->way_known * localised->way + back.way_known * back.way;
     localised->way = way;
     localised->way_known = way > 0.0 ? std::min(1.0, known / way) : localised->way_known;
+    return back;
   }
 
   /// Of a filter that hardly ever decided between places: as if its best one at the end were right.
-  std::optional<LocalisedLog> FromEnd(const PoseEstimate& last, const base::Rng& rng) const {
+  std::optional<LocalisedLog> FromEnd(const PoseEstimate& last, double way,
+                                      const base::Rng& rng) const {
     std::size_t end = log.scans.size() - 1;
     while (end > 0 && !OdometryOf(log, log.scans[end])) --end;
     const LocalisedLog back = Back(end, last.X_MB, rng.Fork(0));
     if (back.path.empty()) return std::nullopt;
     const TimedPose start{-back.path.back().time, back.path.back().X_MB};
-    return LocaliseLog(log, At(start.X_MB, rng.Fork(1)), task + ": again", ScanOf(log, start.time),
-                       JudgedFrom::kStart);
+    return Through(start, way, rng.Fork(1), "again");
   }
 
   /// As if the robot had been at `pose` at its time.
-  LocalisedLog Through(const TimedPose& pose, double way, const base::Rng& rng) const {
-    LocalisedLog localised = LocaliseLog(log, At(pose.X_MB, rng.Fork(0)), task + ": another place",
+  /// @param what  is done, for those who wait
+  LocalisedLog Through(const TimedPose& pose, double way, const base::Rng& rng,
+                       const std::string& what) const {
+    LocalisedLog localised = LocaliseLog(log, At(pose.X_MB, rng.Fork(0)), task + ": " + what,
                                          ScanOf(log, pose.time), JudgedFrom::kStart);
-    AddWayTo(pose, way, rng.Fork(1), &localised);
+    const LocalisedLog back = AddWayTo(pose, way, rng.Fork(1), &localised);
+    AddCounts(back, pose.time - log.scans.front().time, &localised);
     return localised;
   }
 };
+
+/// Of what was played forwards: it tells of the map, and that more can be added does not matter.
+bool IsUseless(const LocalisedLog& localised) {
+  return localised.path.empty() || !WhyDoubtful(localised).empty();
+}
 
 }  // namespace
 
@@ -243,14 +284,11 @@ LocalisedLog LocaliseAnywhere(const RobotLog& log, const world::OccupancyGrid& m
   Candidate best{LocaliseLog(log, std::move(anywhere), task), {}};
   const Drives drives{log, filter, params.initial_variance, task};
   const double way = best.localised.way;
-  const auto is_useless = [](const LocalisedLog& localised) {
-    return localised.path.empty() || !WhyDoubtful(localised).empty();
-  };
-  if (best.localised.last.status == LocalisationStatus::kAmbiguous && is_useless(best.localised)) {
-    auto again = drives.FromEnd(best.localised.last, rng.Fork(kFromEnd));
-    if (again && !is_useless(*again)) best.localised = *std::move(again);
+  if (best.localised.last.status == LocalisationStatus::kAmbiguous && IsUseless(best.localised)) {
+    auto again = drives.FromEnd(best.localised.last, way, rng.Fork(kFromEnd));
+    if (again && !IsUseless(*again)) best.localised = *std::move(again);
   }
-  if (is_useless(best.localised)) return best.localised;
+  if (IsUseless(best.localised)) return best.localised;
   const TimedPose first = best.localised.path.front();
   drives.AddWayTo(first, way, rng.Fork(kWayThere), &best.localised);
   const std::vector<Pose2> others =
@@ -270,9 +308,10 @@ LocalisedLog LocaliseAnywhere(const RobotLog& log, const world::OccupancyGrid& m
   std::vector<Candidate> behind;
   for (std::size_t i = 0; i < others.size(); ++i) {
     const TimedPose there{first.time, others[i] * first.X_MB};
-    Candidate other{drives.Through(there, way, rng.Fork(kOtherPlaces + i)), {}};
+    Candidate other{drives.Through(there, way, rng.Fork(kOtherPlaces + i), "another place"), {}};
     explain(&other);
-    if (IsBetter(other.explained, best.explained)) std::swap(best, other);
+    if (!IsUseless(other.localised) && IsBetter(other.explained, best.explained))
+      std::swap(best, other);
     behind.push_back(std::move(other));
   }
   for (const Candidate& other : behind) {

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 
 #include "hires/geometry/angles.h"
 #include "hires/localisation/localise_log.h"
@@ -203,6 +204,65 @@ TEST(LocaliseAnywhereTest, OneViewDoesNotTellTheHalvesApartHoweverLongTheRobotSt
     Stand(map, 1000, &drive);
     EXPECT_TRUE(Localise(drive, map, seed).rival.has_value());
   }
+}
+
+int CountOf(const std::map<LocalisationStatus, int>& statuses) {
+  int count = 0;
+  for (const auto& [status, times] : statuses) count += times;
+  return count;
+}
+
+int CountOf(const std::map<ScanOutcome, int>& outcomes) {
+  int count = 0;
+  for (const auto& [outcome, times] : outcomes) count += times;
+  return count;
+}
+
+TEST(LocaliseAnywhereTest, AllScansAreCountedWhicheverPlaceIsTheAnswer) {
+  const OccupancyGrid map = NearlySameTurnedByHalf();
+  MonteCarloParams few;
+  few.min_particles = 100;
+  few.max_particles = 500;
+  few.global_particles = 3000;
+  int num_others = 0;
+  for (int seed = 1; seed <= test_support::Rounds(32); ++seed) {
+    SCOPED_TRACE(seed);
+    SimulatedDrive drive = DriveIn(map, seed);
+    drive.log.scans.front().time -= 1.0;  // no odometry is near
+    const Pose2 alone = LocaliseByFilterAlone(drive, map, seed, few).last.X_MB;
+    const LocalisedLog localised = Localise(drive, map, seed, few);
+    num_others += Off(localised.last.X_MB, alone) > 1.0;
+    const int num_scans = static_cast<int>(drive.log.scans.size());
+    EXPECT_EQ(localised.num_without_odometry, 1);
+    EXPECT_EQ(CountOf(localised.statuses), num_scans - 1);
+    EXPECT_EQ(CountOf(localised.outcomes), num_scans - 1);
+  }
+  EXPECT_GT(num_others, 0) << "nothing was tested";
+}
+
+/// The robot is carried away for a while, and back to where it was.
+TEST(LocaliseAnywhereTest, PosesThatAreContradictedCountUntilOthersReplaceThem) {
+  const OccupancyGrid map = test_support::RoomsWithShelf();
+  SimulatedDrive drive =
+      test_support::DriveThrough(map, test_support::CourseThroughTwoRooms(), {}, base::Rng(2));
+  base::Rng rng(7);
+  for (std::size_t i = 0; i < drive.log.scans.size(); ++i) {
+    RobotLog::Scan& scan = drive.log.scans[i];
+    if (scan.time < 34.0 || scan.time > 60.0) continue;
+    const Pose2 there = TurnedByHalf(drive.truth[i].X_MB);
+    scan.reading = test_support::ScanInGrid(map, there * scan.X_BL, {}, &rng);
+  }
+  // People stand all round meanwhile, so that the robot looks everywhere.
+  for (RobotLog::Scan& scan : drive.log.scans) {
+    const bool is_carried = std::abs(scan.time - 36.0) < 2.0 || std::abs(scan.time - 62.0) < 2.0;
+    if (!is_carried) continue;
+    for (float& range : scan.reading.ranges) range = std::min(range, 0.5f);
+  }
+  const LocalisedLog alone = LocaliseByFilterAlone(drive, map, 5), all = Localise(drive, map, 5);
+  ASSERT_FALSE(alone.contradicted.empty());
+  ASSERT_GT(all.path.size(), alone.path.size()) << "nothing was tested";
+  ASSERT_LT(alone.path.front().time, 30.0) << "nothing was tested";
+  EXPECT_EQ(all.contradicted, alone.contradicted);
 }
 
 TEST(LocaliseAnywhereTest, WhereNothingElseFitsTheFiltersWordStaysAndTheWayThereIsAdded) {
