@@ -10,9 +10,9 @@ namespace hires::localisation {
 namespace {
 
 constexpr double kSignificant = 3.0;   // standard errors
-constexpr double kLeastMore = 0.01;    // of the beams
+constexpr double kLeastMore = 0.005;   // of the beams
 constexpr std::size_t kFewScans = 10;  // whose spread tells nothing
-constexpr double kFewerPoses = 0.2;    // of the scans
+constexpr double kFewPoses = 0.5;      // of those that the other way has
 constexpr double kSamePath = 1.0;      // [m] at most, in the median
 constexpr double kSameHeading = 0.5;   // [rad] likewise
 
@@ -29,10 +29,13 @@ double Median(std::vector<double>* values) {
   return *middle;
 }
 
-double ShareWithPoses(const ExplainedShares& shares) {
-  const auto count = std::count_if(shares.begin(), shares.end(),
-                                   [](const std::optional<double>& share) { return share; });
-  return shares.empty() ? 0.0 : static_cast<double>(count) / static_cast<double>(shares.size());
+/// Whether one way has poses for less than half as many scans as the other.
+bool LacksPoses(const ExplainedShares& a, const ExplainedShares& b) {
+  const auto count = [](const ExplainedShares& shares) {
+    return std::count_if(shares.begin(), shares.end(),
+                         [](const std::optional<double>& share) { return share.has_value(); });
+  };
+  return static_cast<double>(count(a)) < kFewPoses * static_cast<double>(count(b));
 }
 
 /// Of the scans that both ways have poses for.
@@ -84,16 +87,14 @@ TimedPath PosesApart(const TimedPath& path, double distance, double turn) {
 }
 
 bool IsBetter(const ExplainedShares& a, const ExplainedShares& b) {
-  const double more_poses = ShareWithPoses(a) - ShareWithPoses(b);
-  if (std::abs(more_poses) > kFewerPoses) return more_poses > 0.0;
+  if (LacksPoses(a, b) || LacksPoses(b, a)) return LacksPoses(b, a);
   const MeanShares mean = MeanExplained(a, b);
   return mean.a > mean.b;
 }
 
 bool IsSignificantlyBetter(const ExplainedShares& a, const ExplainedShares& b) {
-  const double more_poses = ShareWithPoses(a) - ShareWithPoses(b);
-  if (more_poses > kFewerPoses) return !ExplainsMore(b, a);
-  return more_poses >= -kFewerPoses && ExplainsMore(a, b);
+  if (LacksPoses(b, a)) return !ExplainsMore(b, a);
+  return !LacksPoses(a, b) && ExplainsMore(a, b);
 }
 
 bool IsSameWay(const TimedPath& a, const TimedPath& b) {

@@ -25,16 +25,16 @@ MeanShares MeanExplained(const ExplainedShares& a, const ExplainedShares& b);
 /// was taken: views of their own, however long the robot stood somewhere.
 TimedPath PosesApart(const TimedPath& path, double distance, double turn);
 
-/// Which of two ways is the more likely one: that with poses for more of the scans, if it is more
-/// than a fifth of them, else that which explains more beams of the scans that both have poses for.
+/// Which of two ways is the more likely one: that which explains more beams of the scans that both
+/// have poses for; but none that has poses for less than half as many scans as the other.
 /// @pre both are of the same scans
 bool IsBetter(const ExplainedShares& a, const ExplainedShares& b);
 
 /// Whether one way is so much better than the other that chance is no reason. Of the scans that
-/// both have poses for it explains more beams, at least 1 % and more than 3 standard errors of the
-/// mean; of fewer than 10 scans never. Or it has poses for more of the scans, more than a fifth of
-/// them. Where each is the better one by one of these, neither is.
-/// Scans of one view err alike and must not be counted as several.
+/// both have poses for it explains more beams, at least 0.5 % and more than 3 standard errors of
+/// the mean; of fewer than 10 scans never. Or the other has poses for less than half as many scans:
+/// a way that is right may lack some, too. Where each is the better one by one of these, neither
+/// is. Scans of one view err alike and must not be counted as several.
 /// @pre both are of the same scans
 bool IsSignificantlyBetter(const ExplainedShares& a, const ExplainedShares& b);
 

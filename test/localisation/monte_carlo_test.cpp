@@ -623,7 +623,9 @@ TEST(LocaliseLogTest, PosesFromBeforeAPauseAreNotContradictedByThoseBehindIt) {
       return static_cast<double>(std::count_if(all.begin(), all.end(), is_before));
     };
     EXPECT_GT(count(found.path), 0.9 * count(drive.truth));
-    EXPECT_EQ(ShareWrong(found.path, drive.truth), 0.0);
+    TimedPath before = found.path;
+    before.erase(std::find_if_not(before.begin(), before.end(), is_before), before.end());
+    EXPECT_EQ(ShareWrong(before, drive.truth), 0.0);
   }
   EXPECT_GT(num_tested, 0);
 }

@@ -95,10 +95,10 @@ LocalisedLog LocaliseLog(const RobotLog& log, MonteCarloLocalisation filter,
 /// half, or from room to room, perhaps in the wrong one. So when the drive is over, what was driven
 /// before its first pose is played backwards from there, and all other places where echoes and way
 /// of the whole drive fit (FindOtherPlaces) are played likewise, forwards and backwards. Where the
-/// drive explains more beams is the answer; what does not explain significantly fewer (1 % and 3
+/// drive explains more beams is the answer; what does not explain significantly fewer (0.5 % and 3
 /// standard errors of the mean, over scans that are 0.5 m or 0.5 rad apart and for which both have
-/// poses) is its rival, unless it lacks poses for more than a fifth of the scans that the answer
-/// has them for. A beam is explained that ends near an obstacle and passes none.
+/// poses) is its rival, unless it has poses for less than half as many scans. A beam is explained
+/// that ends near an obstacle and passes none.
 /// @throws base::ConfigError as MonteCarloLocalisation does.
 LocalisedLog LocaliseAnywhere(const RobotLog& log, const world::OccupancyGrid& map,
                               const MonteCarloParams& params, const base::Rng& rng,
