@@ -2,6 +2,7 @@
 #include <cmath>
 #include <cstdint>
 #include <optional>
+#include <set>
 #include <string>
 #include <utility>
 #include <vector>
@@ -10,6 +11,7 @@
 #include "localisation/beams.h"
 #include "localisation/likelihood_field.h"
 #include "localisation/other_places.h"
+#include "localisation/way_comparison.h"
 
 namespace hires::localisation {
 namespace {
@@ -18,12 +20,10 @@ using Eigen::Vector2d;
 using geometry::Pose2;
 
 enum Streams : std::uint64_t { kWayThere = 1, kFromEnd, kOtherPlaces };
-constexpr int kMostPlayed = 4;              // other places
-constexpr std::size_t kMostSketched = 100;  // scans
-constexpr std::size_t kMostCompared = 200;  // scans
-constexpr double kSignificant = 3.0;        // standard errors
-constexpr std::size_t kFewScans = 10;       // whose spread tells nothing
-constexpr double kSamePath = 1.0;           // [m] at most, in the median
+constexpr int kMostPlayed = 4;                                // other places
+constexpr std::size_t kMostSketched = 100;                    // scans
+constexpr std::size_t kMostCompared = 200;                    // scans
+constexpr double kSketchedApart = 0.1, kComparedApart = 0.5;  // [m] and [rad], from scan to scan
 constexpr double kClearOf = 2.0;  // explained distances before its end, what a beam passes
 
 /// A scan and where a path says that the base was.
@@ -56,6 +56,23 @@ std::vector<PlacedBeams> PlacedScans(const RobotLog& log, const TimedPath& path,
   return placed;
 }
 
+/// Scans of a path for its sketch.
+std::vector<PlacedBeams> SketchedScans(const RobotLog& log, const TimedPath& path,
+                                       const MonteCarloParams& params) {
+  return PlacedScans(log, PosesApart(path, kSketchedApart, kSketchedApart), params, kMostSketched);
+}
+
+/// Scans of the whole log, by whose beams the ways that it may have gone are compared; their poses
+/// are those of the odometry.
+std::vector<PlacedBeams> ComparedScans(const RobotLog& log, const MonteCarloParams& params) {
+  TimedPath odometry;
+  for (const RobotLog::Scan& scan : log.scans)
+    if (const std::optional<Pose2> X_OB = OdometryOf(log, scan))
+      odometry.push_back({scan.time, *X_OB});
+  return PlacedScans(log, PosesApart(odometry, kComparedApart, kComparedApart), params,
+                     kMostCompared);
+}
+
 Vector2d EndOf(const Beams& beams, std::size_t k) { return {beams.x[k], beams.y[k]}; }
 
 DriveSketch SketchOf(const std::vector<PlacedBeams>& scans) {
@@ -68,8 +85,8 @@ DriveSketch SketchOf(const std::vector<PlacedBeams>& scans) {
   return sketch;
 }
 
-/// Whether an obstacle of the map lies on the first `length` [m] of the way from a point to another,
-/// the point itself included.
+/// Whether an obstacle of the map lies on the first `length` [m] of the way from a point to
+/// another, the point itself included.
 bool IsObstacleBetween(const world::OccupancyGrid& map, const Vector2d& from, const Vector2d& to,
                        double length) {
   const Vector2d step = (to - from).normalized() * map.resolution;
@@ -118,50 +135,11 @@ class BeamJudge {
   double explained_distance_;
 };
 
-const TimedPose* PoseAt(const TimedPath& path, double time) {
-  const auto at = std::lower_bound(path.begin(), path.end(), time,
-                                   [](const TimedPose& pose, double t) { return pose.time < t; });
-  return at != path.end() && at->time == time ? &*at : nullptr;
-}
-
-double Mean(const std::vector<double>& values) {
-  double sum = 0.0;
-  for (const double value : values) sum += value;
-  return values.empty() ? 0.0 : sum / static_cast<double>(values.size());
-}
-
-/// A way that the drive may have taken, and of each scan that is compared the share of its beams
-/// that is explained there.
+/// A way that the drive may have taken, and what of the scans that are compared is explained there.
 struct Candidate {
   LocalisedLog localised;
-  std::vector<double> explained;
+  ExplainedShares explained;
 };
-
-/// Whether one explains so many more beams than the other that chance is no reason.
-bool IsSignificantlyBetter(const Candidate& a, const Candidate& b) {
-  const std::size_t count = a.explained.size();
-  if (count < kFewScans) return false;
-  std::vector<double> more;
-  for (std::size_t i = 0; i < count; ++i) more.push_back(a.explained[i] - b.explained[i]);
-  const double mean = Mean(more);
-  double squares = 0.0;
-  for (const double value : more) squares += (value - mean) * (value - mean);
-  const double error = std::sqrt(squares / static_cast<double>((count - 1) * count));
-  return mean > kSignificant * error;
-}
-
-/// Whether both say much the same, wherever both say something.
-bool IsSameWay(const TimedPath& a, const TimedPath& b) {
-  std::vector<double> off;
-  for (const TimedPose& pose : a) {
-    if (const TimedPose* other = PoseAt(b, pose.time))
-      off.push_back((other->X_MB.position() - pose.X_MB.position()).norm());
-  }
-  if (off.empty()) return false;
-  const auto middle = off.begin() + static_cast<std::ptrdiff_t>(off.size() / 2);
-  std::nth_element(off.begin(), middle, off.end());
-  return *middle <= kSamePath;
-}
 
 std::size_t ScanOf(const RobotLog& log, double time) {
   const auto at = std::find_if(log.scans.begin(), log.scans.end(),
@@ -175,11 +153,45 @@ RobotLog Reversed(const RobotLog& log, std::size_t last_scan) {
   for (std::size_t i = last_scan + 1; i-- > 0;) {
     RobotLog::Scan scan = log.scans[i];
     scan.X_OB = OdometryOf(log, scan);
-    if (!scan.X_OB) continue;
     scan.time = -scan.time;
     reversed.scans.push_back(std::move(scan));
   }
   return reversed;
+}
+
+/// Times of poses that were left out on the way forwards or backwards, and have no others instead.
+/// @param first  [s] of the pose from which it was played backwards
+std::vector<double> ContradictedIn(const LocalisedLog& localised, const LocalisedLog& back,
+                                   double first) {
+  std::set<double> times(localised.contradicted.begin(), localised.contradicted.end());
+  for (const double time : back.contradicted)
+    if (-time < first) times.insert(-time);
+  std::vector<double> contradicted;
+  for (const double time : times)
+    if (!PoseAt(localised.path, time)) contradicted.push_back(time);
+  return contradicted;
+}
+
+int NumJudged(const LocalisedLog& localised) {
+  int count = 0;
+  for (const auto& [outcome, times] : localised.outcomes)
+    if (!IsBad(outcome)) count += times;
+  return count;
+}
+
+/// Counts the scans, too, that were played backwards.
+/// @param after  [s] from the log's first scan to that from which it was played backwards
+void AddCounts(const LocalisedLog& back, double after, LocalisedLog* localised) {
+  const int here = NumJudged(*localised), there = NumJudged(back);
+  if (here + there > 0) {
+    localised->explained = (here * localised->explained + there * back.explained) / (here + there);
+  }
+  for (const auto& [outcome, times] : back.outcomes) localised->outcomes[outcome] += times;
+  for (const auto& [status, times] : back.statuses) localised->statuses[status] += times;
+  localised->num_without_odometry += back.num_without_odometry;
+  localised->num_relocations += back.num_relocations;
+  if (!localised->relocated_after && back.relocated_after)
+    localised->relocated_after = after - *back.relocated_after;
 }
 
 /// Everything that plays a drive from a pose on the way.
@@ -196,52 +208,58 @@ struct Drives {
     return there;
   }
 
-  /// The drive until a scan, backwards from where the robot was then; its times are negative.
+  /// The drive until a scan, backwards from where the robot was then; its times are negative, and
+  /// that scan is in no count.
   LocalisedLog Back(std::size_t scan, const Pose2& X_MB, const base::Rng& rng) const {
     return LocaliseLog(Reversed(log, scan), At(X_MB, rng), task + ": backwards", 0,
-                       JudgedFrom::kStart);
+                       JudgedFrom::kStart, 1);
   }
 
   /// Puts before the path how the robot came to its first pose.
   /// @param way  [m] of the whole drive, as LocalisedLog::way.
-  void AddWayTo(const TimedPose& first, double way, const base::Rng& rng,
-                LocalisedLog* localised) const {
-    const std::size_t scan = ScanOf(log, first.time);
-    double known = localised->way_known * localised->way;
-    if (scan > 0) {
-      const LocalisedLog back = Back(scan, first.X_MB, rng);
-      TimedPath path;
-      for (auto pose = back.path.rbegin(); pose != back.path.rend(); ++pose)
-        if (-pose->time < first.time) path.push_back({-pose->time, pose->X_MB});
-      const int num_added = static_cast<int>(path.size());
-      localised->num_contradicted = std::max(0, localised->num_contradicted - num_added);
-      path.insert(path.end(), localised->path.begin(), localised->path.end());
-      localised->path = std::move(path);
-      known += back.way_known * back.way;
-    }
+  /// @return what was played backwards
+  LocalisedLog AddWayTo(const TimedPose& first, double way, const base::Rng& rng,
+                        LocalisedLog* localised) const {
+    LocalisedLog back = Back(ScanOf(log, first.time), first.X_MB, rng);
+    TimedPath path;
+    for (auto pose = back.path.rbegin(); pose != back.path.rend(); ++pose)
+      if (-pose->time < first.time) path.push_back({-pose->time, pose->X_MB});
+    path.insert(path.end(), localised->path.begin(), localised->path.end());
+    localised->path = std::move(path);
+    localised->contradicted = ContradictedIn(*localised, back, first.time);
+    const double known = localised->way_known * localised->way + back.way_known * back.way;
     localised->way = way;
     localised->way_known = way > 0.0 ? std::min(1.0, known / way) : localised->way_known;
+    return back;
   }
 
   /// Of a filter that hardly ever decided between places: as if its best one at the end were right.
-  std::optional<LocalisedLog> FromEnd(const PoseEstimate& last, const base::Rng& rng) const {
+  std::optional<LocalisedLog> FromEnd(const PoseEstimate& last, double way,
+                                      const base::Rng& rng) const {
     std::size_t end = log.scans.size() - 1;
     while (end > 0 && !OdometryOf(log, log.scans[end])) --end;
     const LocalisedLog back = Back(end, last.X_MB, rng.Fork(0));
     if (back.path.empty()) return std::nullopt;
     const TimedPose start{-back.path.back().time, back.path.back().X_MB};
-    return LocaliseLog(log, At(start.X_MB, rng.Fork(1)), task + ": again", ScanOf(log, start.time),
-                       JudgedFrom::kStart);
+    return Through(start, way, rng.Fork(1), "again");
   }
 
   /// As if the robot had been at `pose` at its time.
-  LocalisedLog Through(const TimedPose& pose, double way, const base::Rng& rng) const {
-    LocalisedLog localised = LocaliseLog(log, At(pose.X_MB, rng.Fork(0)), task + ": another place",
+  /// @param what  is done, for those who wait
+  LocalisedLog Through(const TimedPose& pose, double way, const base::Rng& rng,
+                       const std::string& what) const {
+    LocalisedLog localised = LocaliseLog(log, At(pose.X_MB, rng.Fork(0)), task + ": " + what,
                                          ScanOf(log, pose.time), JudgedFrom::kStart);
-    AddWayTo(pose, way, rng.Fork(1), &localised);
+    const LocalisedLog back = AddWayTo(pose, way, rng.Fork(1), &localised);
+    AddCounts(back, pose.time - log.scans.front().time, &localised);
     return localised;
   }
 };
+
+/// Of what was played forwards: it tells of the map, and that more can be added does not matter.
+bool IsUseless(const LocalisedLog& localised) {
+  return localised.path.empty() || !WhyDoubtful(localised).empty();
+}
 
 }  // namespace
 
@@ -266,46 +284,43 @@ LocalisedLog LocaliseAnywhere(const RobotLog& log, const world::OccupancyGrid& m
   Candidate best{LocaliseLog(log, std::move(anywhere), task), {}};
   const Drives drives{log, filter, params.initial_variance, task};
   const double way = best.localised.way;
-  const auto is_useless = [](const LocalisedLog& localised) {
-    return localised.path.empty() || !WhyDoubtful(localised).empty();
-  };
-  if (best.localised.last.status == LocalisationStatus::kAmbiguous && is_useless(best.localised)) {
-    auto again = drives.FromEnd(best.localised.last, rng.Fork(kFromEnd));
-    if (again && !is_useless(*again)) best.localised = *std::move(again);
+  if (best.localised.last.status == LocalisationStatus::kAmbiguous && IsUseless(best.localised)) {
+    auto again = drives.FromEnd(best.localised.last, way, rng.Fork(kFromEnd));
+    if (again && !IsUseless(*again)) best.localised = *std::move(again);
   }
-  if (is_useless(best.localised)) return best.localised;
+  if (IsUseless(best.localised)) return best.localised;
   const TimedPose first = best.localised.path.front();
   drives.AddWayTo(first, way, rng.Fork(kWayThere), &best.localised);
   const std::vector<Pose2> others =
-      FindOtherPlaces(map, SketchOf(PlacedScans(log, best.localised.path, params, kMostSketched)),
+      FindOtherPlaces(map, SketchOf(SketchedScans(log, best.localised.path, params)),
                       params.explained_distance, kMostPlayed, task + ": other places");
   if (others.empty()) return best.localised;
-  const std::vector<PlacedBeams> compared =
-      PlacedScans(log, best.localised.path, params, kMostCompared);
+  const std::vector<PlacedBeams> compared = ComparedScans(log, params);
   const BeamJudge judge(map, params);
   const auto explain = [&](Candidate* candidate) {
     for (const PlacedBeams& scan : compared) {
       const TimedPose* pose = PoseAt(candidate->localised.path, scan.time);
-      candidate->explained.push_back(pose ? judge.Explained(scan, pose->X_MB) : 0.0);
+      candidate->explained.push_back(pose ? std::optional(judge.Explained(scan, pose->X_MB))
+                                          : std::nullopt);
     }
   };
   explain(&best);
   std::vector<Candidate> behind;
   for (std::size_t i = 0; i < others.size(); ++i) {
     const TimedPose there{first.time, others[i] * first.X_MB};
-    Candidate other{drives.Through(there, way, rng.Fork(kOtherPlaces + i)), {}};
+    Candidate other{drives.Through(there, way, rng.Fork(kOtherPlaces + i), "another place"), {}};
     explain(&other);
-    if (Mean(other.explained) > Mean(best.explained)) std::swap(best, other);
+    if (!IsUseless(other.localised) && IsBetter(other.explained, best.explained))
+      std::swap(best, other);
     behind.push_back(std::move(other));
   }
   for (const Candidate& other : behind) {
     const TimedPath& other_way = other.localised.path;
     const bool is_rival = !other_way.empty() && !IsSameWay(best.localised.path, other_way) &&
-                          !IsSignificantlyBetter(best, other);
-    const double explained = Mean(other.explained);
-    if (!is_rival || (best.localised.rival && best.localised.rival->explained >= explained))
-      continue;
-    best.localised.rival = Rival{other_way.back().X_MB, explained, Mean(best.explained)};
+                          !IsSignificantlyBetter(best.explained, other.explained);
+    const MeanShares mean = MeanExplained(best.explained, other.explained);
+    if (!is_rival || (best.localised.rival && best.localised.rival->explained >= mean.b)) continue;
+    best.localised.rival = Rival{other_way.back().X_MB, mean.b, mean.a};
   }
   return best.localised;
 }

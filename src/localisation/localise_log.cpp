@@ -57,15 +57,24 @@ bool IsSeen(const Moment& a, const Moment& b) {
   return std::abs(b.way - a.way) - std::abs(b.way_seen - a.way_seen) < kUnseen;
 }
 
+/// Whether what was contradicted between two moments was believed for long enough to be more than
+/// what the odometry made of the belief before a pause.
+bool IsHeld(const Moment& a, const Moment& b) {
+  constexpr double kHeld = 1.0;  // [m]
+  return std::abs(b.way_seen - a.way_seen) >= kHeld;
+}
+
 class LogLocaliser {
  public:
   LogLocaliser(const RobotLog& log, MonteCarloLocalisation filter)
       : log_(log), filter_(std::move(filter)) {}
 
-  void Take(const RobotLog::Scan& scan);
+  void Take(const RobotLog::Scan& scan, bool is_counted);
   LocalisedLog Result(JudgedFrom from);
 
  private:
+  void Count(ScanOutcome outcome, const PoseEstimate& estimate);
+  void CountSincePose(ScanOutcome outcome, const PoseEstimate& estimate);
   void TakeMoment(double time, const Pose2& X_OB, ScanOutcome outcome);
   /// Leaves out of the path what its end, or its beginning, contradicts.
   void JudgePath(JudgedFrom from);
@@ -84,10 +93,10 @@ class LogLocaliser {
   int num_judged_{0}, num_judged_since_{0};
 };
 
-void LogLocaliser::Take(const RobotLog::Scan& scan) {
+void LogLocaliser::Take(const RobotLog::Scan& scan, bool is_counted) {
   const std::optional<Pose2> X_OB = OdometryOf(log_, scan);
   if (!X_OB) {
-    ++localised_.num_without_odometry;
+    localised_.num_without_odometry += is_counted;
     return;
   }
   const ScanOutcome outcome = filter_.Update(scan.time, *X_OB, scan.reading, scan.X_BL);
@@ -95,21 +104,27 @@ void LogLocaliser::Take(const RobotLog::Scan& scan) {
   TakeEstimate(scan.time, outcome, *X_OB);
   const PoseEstimate& estimate = localised_.last;
   const bool is_good = estimate.status == LocalisationStatus::kGood;
-  if (is_good || localised_.localised_after) ++localised_.num_since;
-  ++localised_.outcomes[outcome];
-  ++localised_.statuses[estimate.status];
-  if (!IsBad(outcome)) {
-    ++num_judged_;
-    localised_.explained += estimate.explained;
-    if (is_good || localised_.localised_after) {
-      ++num_judged_since_;
-      localised_.explained_since += estimate.explained;
-    }
-  }
+  if (is_good && !localised_.localised_after) localised_.localised_after = SinceFirst(scan.time);
+  if (is_counted) Count(outcome, estimate);
+  if (localised_.localised_after) CountSincePose(outcome, estimate);
   if (!is_good) return;
-  if (!localised_.localised_after) localised_.localised_after = SinceFirst(scan.time);
   localised_.path.push_back({scan.time, estimate.X_MB});
   moments_.back().is_in_path = true;
+}
+
+void LogLocaliser::Count(ScanOutcome outcome, const PoseEstimate& estimate) {
+  ++localised_.outcomes[outcome];
+  ++localised_.statuses[estimate.status];
+  if (IsBad(outcome)) return;
+  ++num_judged_;
+  localised_.explained += estimate.explained;
+}
+
+void LogLocaliser::CountSincePose(ScanOutcome outcome, const PoseEstimate& estimate) {
+  ++localised_.since_pose.num_scans;
+  if (IsBad(outcome)) return;
+  ++num_judged_since_;
+  localised_.since_pose.explained += estimate.explained;
 }
 
 void LogLocaliser::TakeMoment(double time, const Pose2& X_OB, ScanOutcome outcome) {
@@ -132,23 +147,29 @@ void LogLocaliser::JudgePath(JudgedFrom from) {
   for (Moment& moment : moments_)
     if (moment.is_in_path) poses.push_back({&moment, localised_.path[next++]});
   if (from == JudgedFrom::kEnd) std::reverse(poses.begin(), poses.end());
-  const Judged *before = nullptr, *last_kept = nullptr;
+  const Judged *before = nullptr, *last_kept = nullptr, *since_leap = nullptr;
   bool is_kept = true;  // the one before
   for (const Judged& pose : poses) {
-    if (before && IsSeen(*pose.moment, *before->moment) && !DoAgree(pose, *before))
-      is_kept = DoAgree(pose, *last_kept);
+    if (before) {
+      const bool is_seen = IsSeen(*pose.moment, *before->moment), agrees = DoAgree(pose, *before);
+      if (is_seen && !agrees) {
+        is_kept = DoAgree(pose, *last_kept);
+        since_leap = &pose;
+      } else if (!is_seen && !is_kept) {
+        is_kept = !agrees || !IsHeld(*since_leap->moment, *before->moment);
+      }
+    }
     before = &pose;
     pose.moment->is_in_path = is_kept;
     if (is_kept) last_kept = &pose;
   }
-  localised_.num_contradicted = 0;
   TimedPath kept;
   if (from == JudgedFrom::kEnd) std::reverse(poses.begin(), poses.end());
   for (const Judged& pose : poses) {
     if (pose.moment->is_in_path)
       kept.push_back(pose.pose);
     else
-      ++localised_.num_contradicted;
+      localised_.contradicted.push_back(pose.pose.time);
   }
   localised_.path = std::move(kept);
 }
@@ -173,11 +194,13 @@ double LogLocaliser::WayKnown() const {
 }
 
 LocalisedLog LogLocaliser::Result(JudgedFrom from) {
+  localised_.since_pose.num_poses = static_cast<int>(localised_.path.size());
+  localised_.since_pose.num_relocations = localised_.num_relocations;
   JudgePath(from);
   if (!moments_.empty()) localised_.way = moments_.back().way_seen;
   localised_.way_known = WayKnown();
   if (num_judged_ > 0) localised_.explained /= num_judged_;
-  if (num_judged_since_ > 0) localised_.explained_since /= num_judged_since_;
+  if (num_judged_since_ > 0) localised_.since_pose.explained /= num_judged_since_;
   return std::move(localised_);
 }
 
@@ -185,17 +208,16 @@ LocalisedLog LogLocaliser::Result(JudgedFrom from) {
 
 std::string WhyDoubtful(const LocalisedLog& localised) {
   if (localised.path.empty()) return "";
-  const double num_poses = static_cast<double>(localised.path.size()) + localised.num_contradicted;
+  const SincePose& since = localised.since_pose;
   std::vector<std::string> against;
-  if (localised.num_relocations >= kOftenElsewhere &&
-      localised.num_relocations > kMostElsewhere * num_poses)
-    against.push_back(fmt::format("it was found elsewhere {} times", localised.num_relocations));
-  if (num_poses < kFewPoses * localised.num_since)
-    against.push_back(fmt::format("{:g} of {} scans since the first pose have none",
-                                  localised.num_since - num_poses, localised.num_since));
-  if (localised.explained_since < kFewExplained)
-    against.push_back(
-        fmt::format("{:.0f} % of the beams are explained", 100.0 * localised.explained_since));
+  if (since.num_relocations >= kOftenElsewhere &&
+      since.num_relocations > kMostElsewhere * since.num_poses)
+    against.push_back(fmt::format("it was found elsewhere {} times", since.num_relocations));
+  if (since.num_poses < kFewPoses * since.num_scans)
+    against.push_back(fmt::format("{} of {} scans since the first pose have none",
+                                  since.num_scans - since.num_poses, since.num_scans));
+  if (since.explained < kFewExplained)
+    against.push_back(fmt::format("{:.0f} % of the beams are explained", 100.0 * since.explained));
   return base::Join(against, ", ");
 }
 
@@ -203,18 +225,19 @@ std::string WhyPartial(const LocalisedLog& localised) {
   if (localised.path.empty() || localised.way_known >= kFewKnown) return "";
   std::string text = fmt::format("where the robot was is known for {:.0f} % of its way",
                                  100.0 * localised.way_known);
-  if (localised.num_contradicted > 0) {
+  if (!localised.contradicted.empty()) {
     text +=
-        fmt::format(", as {} poses before contradict those at last", localised.num_contradicted);
+        fmt::format(", as {} poses before contradict those at last", localised.contradicted.size());
   }
   return text;
 }
 
 LocalisedLog LocaliseLog(const RobotLog& log, MonteCarloLocalisation filter,
-                         const std::string& task, std::size_t first_scan, JudgedFrom from) {
+                         const std::string& task, std::size_t first_scan, JudgedFrom from,
+                         std::size_t first_counted) {
   LogLocaliser localiser(log, std::move(filter));
   for (std::size_t i = first_scan; i < log.scans.size(); ++i) {
-    localiser.Take(log.scans[i]);
+    localiser.Take(log.scans[i], i >= first_counted);
     base::ReportProgress(task, static_cast<double>(i) / log.scans.size());
   }
   base::ReportProgress(task, 1.0);

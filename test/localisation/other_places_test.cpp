@@ -4,7 +4,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 
+#include "hires/geometry/angles.h"
 #include "hires/localisation/localise_log.h"
 #include "support/rounds.h"
 #include "support/simulated_drive.h"
@@ -130,6 +132,32 @@ TEST(LocaliseAnywhereTest, APlanThatIsTheSameTurnedByHalfHasARival) {
   }
 }
 
+/// Turned by half about its middle a drive there is hardly elsewhere, but heads the other way.
+TEST(LocaliseAnywhereTest, InTheMiddleOfARoomTheOtherHeadingIsARival) {
+  OccupancyGrid room = SameTurnedByHalf();
+  for (int row = 2; row < 158; ++row)
+    for (int column = 2; column < 238; ++column)
+      room.cells[static_cast<std::size_t>(row) * room.width + column] = world::Cell::kFree;
+  const std::vector<Vector2d> course{{6.0, 4.0}, {6.3, 4.0}, {6.0, 4.3}, {5.8, 3.9}, {6.2, 3.8},
+                                     {6.1, 4.2}, {5.9, 4.1}, {6.0, 3.8}, {6.2, 4.1}, {6.0, 4.0}};
+  MonteCarloParams few;  // particles, so that the filter alone decides
+  few.min_particles = 100;
+  few.max_particles = 500;
+  few.global_particles = 3000;
+  int num_good = 0;
+  for (int seed = 1; seed <= test_support::Rounds(16); ++seed) {
+    SCOPED_TRACE(seed);
+    const SimulatedDrive drive = test_support::DriveThrough(room, course, {}, base::Rng(seed));
+    const LocalisedLog localised = Localise(drive, room, seed, few);
+    if (localised.last.status != LocalisationStatus::kGood) continue;
+    ++num_good;
+    ASSERT_TRUE(localised.rival.has_value());
+    const double turned = localised.rival->X_MB.yaw - localised.path.back().X_MB.yaw;
+    EXPECT_GT(std::abs(geometry::WrapToPi(turned)), 2.5);
+  }
+  EXPECT_GT(num_good, 0) << "nothing was tested";
+}
+
 TEST(LocaliseAnywhereTest, OneCupboardTellsTheHalvesApart) {
   const OccupancyGrid map = NearlySameTurnedByHalf();
   MonteCarloParams few;  // particles: the filter alone takes the half that it came upon first
@@ -149,6 +177,92 @@ TEST(LocaliseAnywhereTest, OneCupboardTellsTheHalvesApart) {
     EXPECT_LT(Off(localised.path.back().X_MB, truth), 0.3);
   }
   EXPECT_GT(num_wrong_alone, 0) << "nothing was tested";
+}
+
+/// Lets the robot stand where it came to, for so many scans more.
+void Stand(const OccupancyGrid& grid, int num_scans, SimulatedDrive* drive) {
+  base::Rng rng(99);
+  RobotLog::Odometry odometry = drive->log.odometry.back();
+  RobotLog::Scan scan = drive->log.scans.back();
+  TimedPose truth = drive->truth.back();
+  for (int i = 1; i <= num_scans; ++i) {
+    odometry.time = scan.time = truth.time = drive->log.odometry.back().time + 0.2;
+    scan.reading = test_support::ScanInGrid(grid, truth.X_MB * scan.X_BL, {}, &rng);
+    drive->log.odometry.push_back(odometry);
+    drive->log.scans.push_back(scan);
+    drive->truth.push_back(truth);
+  }
+}
+
+/// A post is near where the robot stands at last, and hardly seen from anywhere else.
+TEST(LocaliseAnywhereTest, OneViewDoesNotTellTheHalvesApartHoweverLongTheRobotStandsThere) {
+  OccupancyGrid map = SameTurnedByHalf();
+  Fill(60, 144, 61, 145, &map);
+  for (int seed = 1; seed <= 2; ++seed) {
+    SCOPED_TRACE(seed);
+    SimulatedDrive drive = DriveIn(map, seed);
+    Stand(map, 1000, &drive);
+    EXPECT_TRUE(Localise(drive, map, seed).rival.has_value());
+  }
+}
+
+int CountOf(const std::map<LocalisationStatus, int>& statuses) {
+  int count = 0;
+  for (const auto& [status, times] : statuses) count += times;
+  return count;
+}
+
+int CountOf(const std::map<ScanOutcome, int>& outcomes) {
+  int count = 0;
+  for (const auto& [outcome, times] : outcomes) count += times;
+  return count;
+}
+
+TEST(LocaliseAnywhereTest, AllScansAreCountedWhicheverPlaceIsTheAnswer) {
+  const OccupancyGrid map = NearlySameTurnedByHalf();
+  MonteCarloParams few;
+  few.min_particles = 100;
+  few.max_particles = 500;
+  few.global_particles = 3000;
+  int num_others = 0;
+  for (int seed = 1; seed <= test_support::Rounds(32); ++seed) {
+    SCOPED_TRACE(seed);
+    SimulatedDrive drive = DriveIn(map, seed);
+    drive.log.scans.front().time -= 1.0;  // no odometry is near
+    const Pose2 alone = LocaliseByFilterAlone(drive, map, seed, few).last.X_MB;
+    const LocalisedLog localised = Localise(drive, map, seed, few);
+    num_others += Off(localised.last.X_MB, alone) > 1.0;
+    const int num_scans = static_cast<int>(drive.log.scans.size());
+    EXPECT_EQ(localised.num_without_odometry, 1);
+    EXPECT_EQ(CountOf(localised.statuses), num_scans - 1);
+    EXPECT_EQ(CountOf(localised.outcomes), num_scans - 1);
+  }
+  EXPECT_GT(num_others, 0) << "nothing was tested";
+}
+
+/// The robot is carried away for a while, and back to where it was.
+TEST(LocaliseAnywhereTest, PosesThatAreContradictedCountUntilOthersReplaceThem) {
+  const OccupancyGrid map = test_support::RoomsWithShelf();
+  SimulatedDrive drive =
+      test_support::DriveThrough(map, test_support::CourseThroughTwoRooms(), {}, base::Rng(2));
+  base::Rng rng(7);
+  for (std::size_t i = 0; i < drive.log.scans.size(); ++i) {
+    RobotLog::Scan& scan = drive.log.scans[i];
+    if (scan.time < 34.0 || scan.time > 60.0) continue;
+    const Pose2 there = TurnedByHalf(drive.truth[i].X_MB);
+    scan.reading = test_support::ScanInGrid(map, there * scan.X_BL, {}, &rng);
+  }
+  // People stand all round meanwhile, so that the robot looks everywhere.
+  for (RobotLog::Scan& scan : drive.log.scans) {
+    const bool is_carried = std::abs(scan.time - 36.0) < 2.0 || std::abs(scan.time - 62.0) < 2.0;
+    if (!is_carried) continue;
+    for (float& range : scan.reading.ranges) range = std::min(range, 0.5f);
+  }
+  const LocalisedLog alone = LocaliseByFilterAlone(drive, map, 5), all = Localise(drive, map, 5);
+  ASSERT_FALSE(alone.contradicted.empty());
+  ASSERT_GT(all.path.size(), alone.path.size()) << "nothing was tested";
+  ASSERT_LT(alone.path.front().time, 30.0) << "nothing was tested";
+  EXPECT_EQ(all.contradicted, alone.contradicted);
 }
 
 TEST(LocaliseAnywhereTest, WhereNothingElseFitsTheFiltersWordStaysAndTheWayThereIsAdded) {

@@ -156,7 +156,7 @@ ordered_json ToJson(const Answer& answer, const LocaliseOptions& options) {
           {"in_walls", answer.in_walls},
           {"localised_after", OrNull(localised.localised_after)},
           {"way_known", localised.way_known},
-          {"contradicted", localised.num_contradicted},
+          {"contradicted", localised.contradicted.size()},
           {"relocations", localised.num_relocations},
           {"relocated_after", OrNull(localised.relocated_after)},
           {"scans_by_outcome", outcomes},
@@ -177,9 +177,9 @@ std::string WhenLocalised(const Answer& answer) {
     text += fmt::format("; found elsewhere {} times, last after {:.1f} s",
                         localised.num_relocations, *localised.relocated_after);
   }
-  if (localised.num_contradicted > 0) {
+  if (!localised.contradicted.empty()) {
     text += fmt::format(": {} poses that the last ones contradict are left out",
-                        localised.num_contradicted);
+                        localised.contradicted.size());
   }
   return text;
 }
