@@ -217,13 +217,15 @@ class PieceSearch {
     int num_turns = 0;
     for (const int i : nodes) {
       const PieceNode& node = nodes_[i];
-      const bool goes_on = node.move == last || (!IsTurn(node.move) && IsTurn(last));
-      num_turns = IsTurn(node.move) && goes_on ? num_turns + 1 : 1;
-      if (pieces.empty() || !goes_on || (IsTurn(node.move) && num_turns > kMostTurnSteps)) {
+      const bool is_turn = IsTurn(node.move);
+      const bool goes_on =
+          node.move == last ? !is_turn || num_turns < kMostTurnSteps : !is_turn && IsTurn(last);
+      if (!goes_on) {
         pieces.emplace_back();
-        num_turns = 1;
+        num_turns = 0;
       }
-      if (IsTurn(node.move)) pieces.back().sign = node.move == Move::kTurnLeft ? 1 : -1;
+      num_turns += is_turn;
+      if (is_turn) pieces.back().sign = node.move == Move::kTurnLeft ? 1 : -1;
       pieces.back().yaw = node.X_MB.yaw;
       pieces.back().p_MTo = node.X_MB.position();
       last = node.move;
@@ -267,7 +269,7 @@ void WayManoeuvre::SetMotionSet(const robot::MotionSet& limits) {
 void WayManoeuvre::SetWay(bool is_same_goal) {
   watch_.Reset();
   is_stuck_ = false;
-  is_way_new_ = true;
+  least_left_.reset();  // of ways of different length nothing is compared
   if (is_same_goal) return;
   drive_.End();
   num_tries_ = 0;
@@ -309,15 +311,14 @@ void WayManoeuvre::Look(const Pose2& X_MB, const std::vector<Vector2d>& way, std
   const auto ahead = static_cast<std::size_t>(kFacedAhead / params_.sim_granularity);
   const Vector2d& p_MAhead = way[std::min(nearest + ahead, way.size() - 1)];
   is_stuck_ = watch_.Stalls(left + LeftTo(X_MB, p_MAhead)) || is_stuck_;
-  if (is_way_new_) least_left_ = left;  // of ways of different length nothing is compared
-  is_way_new_ = false;
-  if (left < least_left_ - kFurther) {
+  if (!least_left_) least_left_ = left;
+  if (left < *least_left_ - kFurther) {
     least_left_ = left;
     num_tries_ = 0;
   }
   const bool is_near = (way.back() - X_MB.position()).norm() <= NearGoal(params_);
   if (is_near || num_tries_ == kMostManoeuvres || since_search_ < patience_) is_stuck_ = false;
-  if (is_stuck_) least_left_ = std::min(least_left_, left);
+  if (is_stuck_) least_left_ = std::min(*least_left_, left);
 }
 
 }  // namespace hires::navigation

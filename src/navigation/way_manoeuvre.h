@@ -54,11 +54,10 @@ class WayManoeuvre {
   GoalApproach drive_;
   std::optional<Eigen::Vector2d> p_MLast_;  // [m] in the last cycle
   bool is_stuck_{false};
-  bool is_way_new_{true};
-  double least_left_{0.0};    // [m] of the way, as far as it counts
-  int num_tries_{0};          // for this goal, since it came further
-  double since_search_{0.0};  // [s]
-  double patience_{0.0};      // [s] between that one and the next
+  std::optional<double> least_left_;  // [m] of the way, as far as it counts
+  int num_tries_{0};                  // for this goal, since it came further
+  double since_search_{0.0};          // [s]
+  double patience_{0.0};              // [s] between that one and the next
 };
 
 }  // namespace hires::navigation
