@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <filesystem>
+#include <system_error>
 
 #include "hires/base/error.h"
 #include "hires/base/files/own_input.h"
@@ -23,8 +24,11 @@ void CheckOutput(const VerbFile& output, const std::vector<VerbFile>& inputs) {
     base::RefuseOwnInput(output.what, output.path, input.what, input.path);
 }
 
+/// Of devices, as /dev/null, one does for several.
 bool AreSame(const std::string& a, const std::string& b) {
   namespace fs = std::filesystem;
+  std::error_code none_there;
+  if (fs::exists(a, none_there) && !fs::is_regular_file(a, none_there)) return false;
   return fs::absolute(a).lexically_normal() == fs::absolute(b).lexically_normal();
 }
 

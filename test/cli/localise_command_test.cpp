@@ -346,6 +346,7 @@ TEST_F(LocaliseCommandTest, WhatIsReadIsNotWrittenOver) {
   EXPECT_THAT(run(both, both).err,
               HasSubstr("--trajectory and --json: both " + both + "; name two files"));
   EXPECT_THAT(run("-", "-").err, HasSubstr("--trajectory -: is not printed"));
+  EXPECT_NE(run("/dev/null", "/dev/null").code, kExitBadInput) << "a device takes several";
 }
 
 TEST_F(LocaliseCommandTest, MapsThatTellNothingAreRefused) {
