@@ -2,9 +2,9 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <cmath>
 
+#include "hires/base/averages.h"
 #include "hires/geometry/angles.h"
 #include "hires/geometry/pose.h"
 #include "hires/robot/odometry_jump.h"
@@ -17,12 +17,6 @@ constexpr double kSlackOfTurn = 0.1;  // [rad] for rounding and slip
 constexpr double kOneCircle = 2.0 * geometry::kPi, kNearCircle = 1.0;  // [rad]
 constexpr std::size_t kFew = 20;      // moves or turns that tell nothing
 constexpr double kIndoorSpeed = 0.5;  // [m/s]
-
-double Median(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
 
 }  // namespace
 
@@ -48,7 +42,7 @@ void OdometryUnits::Take(double x, double y, double theta, double time) {
 
 std::string OdometryUnits::Doubt() const {
   if (speeds_.size() >= kFew && 2 * num_too_fast_ > static_cast<int>(speeds_.size())) {
-    const double speed = Median(speeds_);
+    const double speed = base::Median(speeds_);
     const auto distance = [&](double unit) {
       return std::abs(std::log(speed / unit / kIndoorSpeed));
     };

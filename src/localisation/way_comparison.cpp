@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstddef>
 
+#include "hires/base/averages.h"
 #include "hires/geometry/angles.h"
 
 namespace hires::localisation {
@@ -15,19 +16,6 @@ constexpr std::size_t kFewScans = 10;  // whose spread tells nothing
 constexpr double kFewPoses = 0.5;      // of those that the other way has
 constexpr double kSamePath = 1.0;      // [m] at most, in the median
 constexpr double kSameHeading = 0.5;   // [rad] likewise
-
-double Mean(const std::vector<double>& values) {
-  double sum = 0.0;
-  for (const double value : values) sum += value;
-  return values.empty() ? 0.0 : sum / static_cast<double>(values.size());
-}
-
-/// @pre there are some; they change their order
-double Median(std::vector<double>* values) {
-  const auto middle = values->begin() + static_cast<std::ptrdiff_t>(values->size() / 2);
-  std::nth_element(values->begin(), middle, values->end());
-  return *middle;
-}
 
 /// Whether one way has poses for less than half as many scans as the other.
 bool LacksPoses(const ExplainedShares& a, const ExplainedShares& b) {
@@ -45,7 +33,7 @@ bool ExplainsMore(const ExplainedShares& a, const ExplainedShares& b) {
     if (a[i] && b[i]) more.push_back(*a[i] - *b[i]);
   const std::size_t count = more.size();
   if (count < kFewScans) return false;
-  const double mean = Mean(more);
+  const double mean = base::Mean(more);
   double squares = 0.0;
   for (const double value : more) squares += (value - mean) * (value - mean);
   const double error = std::sqrt(squares / static_cast<double>((count - 1) * count));
@@ -105,7 +93,7 @@ bool IsSameWay(const TimedPath& a, const TimedPath& b) {
     off.push_back((other->X_MB.position() - pose.X_MB.position()).norm());
     turned.push_back(std::abs(geometry::WrapToPi(other->X_MB.yaw - pose.X_MB.yaw)));
   }
-  return !off.empty() && Median(&off) <= kSamePath && Median(&turned) <= kSameHeading;
+  return !off.empty() && base::Median(off) <= kSamePath && base::Median(turned) <= kSameHeading;
 }
 
 }  // namespace hires::localisation

@@ -9,6 +9,7 @@
 #include <optional>
 #include <vector>
 
+#include "hires/base/averages.h"
 #include "hires/base/check.h"
 #include "hires/base/error.h"
 #include "hires/base/progress.h"
@@ -73,11 +74,10 @@ std::string QuestionOfUnits(const RobotLog& log) {
   if (*least == *most) {
     return fmt::format("; all its ranges are {:g}, as a laser says where it meets nothing", *most);
   }
-  const auto middle = ranges.begin() + static_cast<std::ptrdiff_t>(ranges.size() / 2);
-  std::nth_element(ranges.begin(), middle, ranges.end());
-  if (*middle < kSuspicious) return "";
+  const double middle = base::Median(ranges);
+  if (middle < kSuspicious) return "";
   const auto distance = [&](double unit) {
-    return std::abs(std::log(*middle / unit / kUsualRange));
+    return std::abs(std::log(middle / unit / kUsualRange));
   };
   const bool is_centimetres = distance(100.0) < distance(1000.0);
   return fmt::format(

@@ -3,8 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "reports/text/statistics.h"
+#include "hires/base/averages.h"
 #include "hires/geometry/angles.h"
+#include "reports/text/statistics.h"
 
 namespace hires::lab {
 namespace {
@@ -60,11 +61,8 @@ std::vector<double> MovingAverage(const std::vector<double>& signal, std::size_t
 
 std::vector<double> MovingMedian(const std::vector<double>& signal, std::size_t window,
                                  bool is_causal) {
-  return OverWindows(signal, window, is_causal, [](std::vector<double>* values) {
-    const auto middle = values->begin() + static_cast<std::ptrdiff_t>(values->size() / 2);
-    std::nth_element(values->begin(), middle, values->end());
-    return *middle;
-  });
+  return OverWindows(signal, window, is_causal,
+                     [](const std::vector<double>* values) { return base::Median(*values); });
 }
 
 SecondOrderSection ButterworthLowPass(double cutoff, double rate) {

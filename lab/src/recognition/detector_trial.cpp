@@ -2,9 +2,10 @@
 #include <cmath>
 #include <limits>
 
+#include "base/parallel.h"
+#include "hires/base/averages.h"
 #include "lab/src/recognition/fit_cases.h"
 #include "lab/src/recognition/regression.h"
-#include "base/parallel.h"
 
 namespace hires::lab {
 namespace {
@@ -41,11 +42,9 @@ std::optional<std::vector<std::vector<TwoLooks>>> LookTwice(const DetectorFitOrd
 }
 
 /// Not a number of no values.
-double Median(std::vector<double> values) {
+double MedianOf(std::vector<double> values) {
   if (values.empty()) return std::numeric_limits<double>::quiet_NaN();
-  const auto middle = values.begin() + static_cast<long>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
+  return base::Median(std::move(values));
 }
 
 FitCheck CheckOf(const std::string& part, const std::vector<TwoLooks>& things,
@@ -71,8 +70,8 @@ FitCheck CheckOf(const std::string& part, const std::vector<TwoLooks>& things,
       num_beyond += std::log(look->error) > log + kBeyond * errors.position.spread ? 1 : 0;
     }
   }
-  check.median_error = Median(lengths);
-  check.expected = Median(expected);
+  check.median_error = MedianOf(lengths);
+  check.expected = MedianOf(expected);
   check.beyond = num_beyond / static_cast<double>(lengths.size());  // 0 / 0 is not a number
   return check;
 }

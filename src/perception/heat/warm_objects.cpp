@@ -4,6 +4,7 @@
 #include <map>
 #include <opencv2/imgproc.hpp>
 
+#include "hires/base/averages.h"
 #include "hires/base/check.h"
 #include "hires/perception/line_of_sight.h"
 
@@ -20,13 +21,11 @@ struct Region {
   Pixels pixels;
 };
 
-/// [K]; the upper one of two middles.  @pre there are pixels
+/// [K]  @pre there are pixels
 double MedianOf(const HeatPicture& heat, const Pixels& pixels) {
   std::vector<std::uint16_t> values;
   for (const int i : pixels) values.push_back(heat.centikelvin[i]);
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return kCentikelvin * *middle;
+  return kCentikelvin * base::Median(std::move(values));
 }
 
 double HottestOf(const HeatPicture& heat, const Pixels& pixels) {

@@ -4,10 +4,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 #include <set>
 #include <utility>
 
+#include "hires/base/averages.h"
 #include "hires/base/error.h"
 #include "hires/perception/depth_sensor.h"
 #include "perception/recognition/model_fit.h"
@@ -84,10 +84,6 @@ std::string CategoryOf(const ModelShape& shape) {
   return is_one ? first : "";
 }
 
-double MeanOf(const std::vector<double>& values) {
-  return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
-}
-
 Detection Unknown(const Thing& thing, const Pose3& X_CT) {
   const Footprint print = FootprintOf(thing.p_T);
   std::vector<double> heights;
@@ -159,7 +155,7 @@ void Recogniser::Impl::Name(const std::vector<Candidate>& candidates, Detection*
 
 Detection Recogniser::Impl::Detect(const LabelledPicture& seen, const Thing& thing,
                                    const Pose3& X_CT) const {
-  const bool is_too_far = MeanOf(thing.sample.sd) > kMostNoise;
+  const bool is_too_far = base::Mean(thing.sample.sd) > kMostNoise;
   std::vector<Candidate> candidates;
   if (!is_too_far) candidates = Compare(seen, thing, X_CT);
   Detection detection;

@@ -2,8 +2,9 @@
 
 #include <algorithm>
 #include <map>
-#include <numeric>
 #include <utility>
+
+#include "hires/base/averages.h"
 
 namespace hires::perception {
 namespace {
@@ -30,10 +31,6 @@ double Concavity(const Surfel& a, const Surfel& b) {
   return 0.5 * (b.normal - a.normal).dot((a.p_C - b.p_C).normalized());
 }
 
-double Mean(const std::vector<double>& values) {
-  return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
-}
-
 double Quantile(std::vector<double> values, double share) {
   const auto at =
       values.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));
@@ -55,7 +52,7 @@ std::vector<int> JoinAcrossSmoothBorders(const SurfelCloud& surfels, std::vector
   }
   const auto bends = [&](int one) {
     const auto within = borders.find({one, one});
-    return within != borders.end() && Mean(within->second) > params.min_bend;
+    return within != borders.end() && base::Mean(within->second) > params.min_bend;
   };
   Joined joined(part.empty() ? 0 : *std::max_element(part.begin(), part.end()) + 1);
   for (const auto& [parts, concavities] : borders) {

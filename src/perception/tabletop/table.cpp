@@ -6,6 +6,7 @@
 #include <cmath>
 #include <vector>
 
+#include "hires/base/averages.h"
 #include "hires/perception/depth_sensor.h"
 #include "perception/patches/ransac_plane.h"
 
@@ -125,10 +126,9 @@ std::optional<Plane> LargestPlane(const std::vector<Point>& points, const Level&
     voters.push_back(points[k].p);
     tolerances.push_back(points[k].tolerance);
   }
-  const auto middle = tolerances.begin() + static_cast<std::ptrdiff_t>(tolerances.size() / 2);
-  std::nth_element(tolerances.begin(), middle, tolerances.end());
   const auto found = FindPlaneByRansac(
-      voters, level.up_C, {*middle, level.max_inclination, kMostSamples * params.num_samples});
+      voters, level.up_C,
+      {base::Median(tolerances), level.max_inclination, kMostSamples * params.num_samples});
   if (!found) return std::nullopt;
   return Plane{found->head<3>(), found->w()};
 }
@@ -269,9 +269,7 @@ std::vector<Point> PointsAbout(const Table& plate, const PointCloud& cloud,
 double MedianHeight(const std::vector<Point>& points, const Table& plate) {
   std::vector<double> heights;
   for (const Point& point : points) heights.push_back(plate.HeightOf(point.p));
-  const auto middle = heights.begin() + static_cast<std::ptrdiff_t>(heights.size() / 2);
-  std::nth_element(heights.begin(), middle, heights.end());
-  return *middle;
+  return base::Median(std::move(heights));
 }
 
 Table TableIn(const Plane& plane) {

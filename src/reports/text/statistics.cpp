@@ -159,13 +159,6 @@ Interval PercentileInterval(double estimate, std::vector<double> resampled) {
   return {estimate, at(kTail), at(1.0 - kTail)};
 }
 
-double Mean(const std::vector<double>& values) {
-  if (values.empty()) return 0.0;
-  double sum = 0.0;
-  for (const double value : values) sum += value;
-  return sum / static_cast<double>(values.size());
-}
-
 double Deviation(const std::vector<double>& values) {
   if (values.empty()) return 0.0;
   return std::sqrt(SquaredDeviations(values) / static_cast<double>(values.size()));

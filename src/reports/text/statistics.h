@@ -2,11 +2,12 @@
 
 #include <vector>
 
+#include "hires/base/averages.h"
 #include "hires/base/rng.h"
 
 namespace hires::reports {
 
-double Mean(const std::vector<double>& values);       ///< 0 for no values
+using base::Mean;
 double Deviation(const std::vector<double>& values);  ///< divides by n, as the dissertation does
 
 /// An estimate with its 95 % interval.

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "hires/base/averages.h"
 #include "hires/base/text.h"
 
 namespace hires::cli {
@@ -12,10 +13,7 @@ double SeenMessages::rate() const {
 
 std::optional<double> SeenMessages::age() const {
   if (ages.empty()) return std::nullopt;
-  std::vector<double> sorted = ages;
-  const auto middle = sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2);
-  std::nth_element(sorted.begin(), middle, sorted.end());
-  return *middle;
+  return base::Median(ages);
 }
 
 std::string SeenNode::host() const {

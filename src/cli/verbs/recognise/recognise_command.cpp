@@ -11,6 +11,7 @@
 #include "cli/exit_code.h"
 #include "cli/outputs.h"
 #include "cli/report_output.h"
+#include "hires/base/averages.h"
 #include "hires/base/error.h"
 #include "hires/base/text.h"
 #include "hires/perception/pcd_file.h"
@@ -173,12 +174,11 @@ void CheckUnit(const perception::PointCloud& cloud, const std::string& path) {
     if (perception::IsMeasured(p_C)) depths.push_back(p_C.z());
   }
   if (depths.empty()) return;
-  const auto middle = depths.begin() + static_cast<long>(depths.size() / 2);
-  std::nth_element(depths.begin(), middle, depths.end());
-  if (*middle <= kFarthest) return;
+  const float middle = base::Median(depths);
+  if (middle <= kFarthest) return;
   throw base::ConfigError(fmt::format(
       "{}: half of its points are farther than {:.0f} away; wanted metres: are these millimetres?",
-      path, *middle));
+      path, middle));
 }
 
 }  // namespace
