@@ -92,6 +92,14 @@ Areas AreasOf(const world::World& world, const robot::Robot& robot) {
   if (!robot.profile.tray_link.empty() && !areas.Find(kTrayArea)) {
     areas.all.push_back(TrayAreaOf(robot));
   }
+  const bool has_room = std::any_of(areas.all.begin(), areas.all.end(),
+                                    [](const Area& area) { return area.kind == AreaKind::kRoom; });
+  if (!has_room) {
+    Area floor;
+    floor.name = kFloorArea;
+    floor.kind = AreaKind::kRoom;
+    areas.all.push_back(std::move(floor));
+  }
   std::sort(areas.all.begin(), areas.all.end(),
             [](const Area& a, const Area& b) { return a.name < b.name; });
   return areas;

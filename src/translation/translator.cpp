@@ -60,7 +60,14 @@ bool IsWithin(const Area& area, const geometry::Pose2& X_MB) {
 }
 
 /// The middle of a room may happen to be an area to stand at, but not in every direction.
+/// @throws base::ConfigError for the floor of a world without rooms, which has none
 geometry::Pose2 MiddleOf(const TranslatorContext& context, const Area& area) {
+  if (area.name == kFloorArea) {
+    throw base::ConfigError(fmt::format(
+        "RobotAt({}): nothing says where on the floor; wanted the robot's pose on the Blackboard "
+        "(hasPose), or an area's name",
+        kFloorArea));
+  }
   const geometry::Pose2 X_MA = geometry::Flatten(area.X_FA);
   for (int quarter = 0; quarter < 4; ++quarter) {
     const geometry::Pose2 X_MB{X_MA.x, X_MA.y,
@@ -76,7 +83,7 @@ geometry::Pose2 BaseAt(const TranslatorContext& context, const knowledge::Fluent
   const auto seen = SeenRobot(context, fluents);
   if (!seen) return MiddleOf(context, area);
   const bool may_be_there =
-      area.kind == AreaKind::kRoom ? IsWithin(area, *seen) : AreaAt(context, *seen) == name;
+      AreaAt(context, *seen) == name || (area.kind == AreaKind::kRoom && IsWithin(area, *seen));
   return may_be_there ? *seen : MiddleOf(context, area);
 }
 

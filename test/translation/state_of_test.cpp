@@ -306,6 +306,31 @@ TEST(StateOfTest, ARobotWithoutArmsTakesPosturesForGranted) {
   EXPECT_NEAR(state.world.objects[0].X_MO.translation.z(), 0.35, 0.01);
 }
 
+TEST(StateOfTest, InAWorldWithoutRoomsARobotIsOnItsFloorWhereItIsSeen) {
+  const TranslatorContext context = MakeContext(test_support::Room(), test_support::TrayRobot(), {},
+                                                RestaurantContext().ontology);
+  const auto view = ViewWith({PoseAt("posePR21", 0.4, 0.3, 0.0)});
+  const GeometricState state = StateOf(context, &view, {{"RobotAt", {"floorArea"}}});
+  EXPECT_EQ(state.robot.X_MB.x, 0.4);
+  EXPECT_EQ(state.robot.X_MB.y, 0.3);
+  const std::vector<Atom> atoms = AtomsOf(context, state);
+  const auto said = std::find_if(atoms.begin(), atoms.end(),
+                                 [](const Atom& atom) { return atom.predicate == "RobotAt"; });
+  ASSERT_NE(said, atoms.end());
+  EXPECT_THAT(said->arguments, testing::ElementsAre(kFloorArea));
+}
+
+TEST(StateOfTest, NobodyKnowsWhereOnTheFloorARobotIsThatNobodySees) {
+  const TranslatorContext context =
+      MakeContext(test_support::Room(), test_support::TrayRobot(), {}, nullptr);
+  try {
+    StateOf(context, nullptr, {{"RobotAt", {"floorArea"}}});
+    FAIL() << "no error";
+  } catch (const base::ConfigError& error) {
+    EXPECT_THAT(error.what(), HasSubstr("nothing says where on the floor"));
+  }
+}
+
 TEST(StateOfTest, AnInstanceTheCatalogueLacksIsLikeItsKin) {
   EXPECT_EQ(RestaurantContext().ModelOf("mug7"), "coffee_cup");
   EXPECT_EQ(RestaurantContext().FindModel("teapot1"), "");

@@ -40,9 +40,14 @@ struct Areas {
 
 constexpr char kTrayArea[] = "trayarea1";
 
+/// The room of a world that names none, as one made of a map: wherever on its floor the robot is
+/// seen, if it stands at no area. It has no size and no pose.
+constexpr char kFloorArea[] = "floorarea";
+
 /// Areas from the world's frames, told apart by the words that their names begin with:
 /// `placingArea`, `sittingArea`, `floorArea`; all others are for standing. A robot with a tray has
-/// trayArea1: what of the tray's shapes lies highest. Placing areas have the world's extents.
+/// trayArea1: what of the tray's shapes lies highest. Placing areas have the world's extents. A
+/// world without a room has kFloorArea.
 Areas AreasOf(const world::World& world, const robot::Robot& robot);
 
 /// The same with what the Blackboard knows: kinds by concept (PlacingArea and below, FloorArea,
