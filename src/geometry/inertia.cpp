@@ -3,9 +3,61 @@
 #include <fmt/format.h>
 
 #include <Eigen/Eigenvalues>
+#include <algorithm>
 #include <cmath>
 
+#include "hires/base/check.h"
+#include "hires/base/overloaded.h"
+#include "hires/geometry/angles.h"
+
 namespace hires::geometry {
+namespace {
+
+constexpr double kLeastOfSolid = 0.01;  // share of the solid's moments
+constexpr double kThinnest = 1e-4;      // [m] of the box round a mesh, which may be flat
+
+/// Of density 1 kg/m^3.
+MassProperties UnitSolidOf(const Collision& shape) {
+  Eigen::Vector3d p_SScm = Eigen::Vector3d::Zero();
+  const auto solid = [&](const auto& of_shape, double volume) {
+    return MassProperties{volume, p_SScm, SolidInertia(of_shape, volume)};
+  };
+  const MassProperties in_S = std::visit(
+      base::Overloaded{
+          [&](const Box& box) { return solid(box, box.size.prod()); },
+          [&](const Cylinder& it) { return solid(it, kPi * it.radius * it.radius * it.length); },
+          [&](const Sphere& it) { return solid(it, 4.0 / 3.0 * kPi * std::pow(it.radius, 3)); },
+          [&](const std::shared_ptr<const TriangleMesh>& mesh) {
+            const Aabb bounds = BoundsOf(mesh, {});
+            p_SScm = 0.5 * (bounds.lower + bounds.upper);
+            const Box box{(bounds.upper - bounds.lower).cwiseMax(kThinnest)};
+            return solid(box, box.size.prod());
+          }},
+      shape.shape);
+  const Eigen::Matrix3d R_BS = shape.X_BS.rotation.toRotationMatrix();
+  return {in_S.mass, shape.X_BS * in_S.p_BBcm, R_BS * in_S.I_BBcm * R_BS.transpose()};
+}
+
+/// [m] From a point to the farthest one of a shape.
+double FarthestFrom(const Eigen::Vector3d& p_B, const Collision& shape) {
+  const Eigen::Vector3d p_S = shape.X_BS.Inverse() * p_B;
+  return std::visit(
+      base::Overloaded{[&](const Box& box) { return (p_S.cwiseAbs() + 0.5 * box.size).norm(); },
+                       [&](const Cylinder& it) {
+                         return std::hypot(p_S.head<2>().norm() + it.radius,
+                                           std::abs(p_S.z()) + 0.5 * it.length);
+                       },
+                       [&](const Sphere& sphere) { return p_S.norm() + sphere.radius; },
+                       [&](const std::shared_ptr<const TriangleMesh>& mesh) {
+                         double farthest = 0.0;
+                         for (const Eigen::Vector3d& corner : mesh->vertices)
+                           farthest = std::max(farthest, (corner - p_S).norm());
+                         return farthest;
+                       }},
+      shape.shape);
+}
+
+}  // namespace
 
 Eigen::Matrix3d SolidInertia(const Cylinder& cylinder, double mass) {
   const double r2 = cylinder.radius * cylinder.radius;
@@ -32,8 +84,7 @@ std::string WhyUnphysical(const MassProperties& properties) {
   }
   const Eigen::Matrix3d& inertia = properties.I_BBcm;
   if (!inertia.isApprox(inertia.transpose(), 1e-9)) return "inertia is not symmetric";
-  const Eigen::Vector3d moments =
-      Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(inertia, Eigen::EigenvaluesOnly).eigenvalues();
+  const Eigen::Vector3d moments = PrincipalMoments(properties);
   if (!(moments[0] > 0.0)) return "inertia is not positive definite";
   if (moments[2] > (moments[0] + moments[1]) * (1.0 + 1e-6)) {
     return fmt::format(
@@ -42,6 +93,55 @@ std::string WhyUnphysical(const MassProperties& properties) {
         moments[0], moments[1], moments[2]);
   }
   return "";
+}
+
+MassProperties Together(const std::vector<MassProperties>& parts) {
+  HIRES_CHECK(!parts.empty(), "nothing has no mass properties");
+  MassProperties all;
+  all.mass = 0.0;
+  all.p_BBcm.setZero();
+  all.I_BBcm.setZero();
+  for (const MassProperties& part : parts) {
+    all.mass += part.mass;
+    all.p_BBcm += part.mass * part.p_BBcm;
+  }
+  all.p_BBcm /= all.mass;
+  for (const MassProperties& part : parts) {
+    const Eigen::Vector3d off = part.p_BBcm - all.p_BBcm;
+    all.I_BBcm += part.I_BBcm + part.mass * (off.squaredNorm() * Eigen::Matrix3d::Identity() -
+                                             off * off.transpose());
+  }
+  return all;
+}
+
+MassProperties SolidOf(const std::vector<Collision>& shapes_B, double mass) {
+  std::vector<MassProperties> parts;
+  for (const Collision& shape : shapes_B) parts.push_back(UnitSolidOf(shape));
+  MassProperties solid = Together(parts);
+  solid.I_BBcm *= mass / solid.mass;
+  solid.mass = mass;
+  return solid;
+}
+
+Eigen::Vector3d PrincipalMoments(const MassProperties& properties) {
+  return Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(properties.I_BBcm, Eigen::EigenvaluesOnly)
+      .eigenvalues();
+}
+
+std::string WhyImplausible(const MassProperties& properties,
+                           const std::vector<Collision>& shapes_B) {
+  double farthest = 0.0;
+  for (const Collision& shape : shapes_B)
+    farthest = std::max(farthest, FarthestFrom(properties.p_BBcm, shape));
+  const double most = properties.mass * farthest * farthest;
+  const Eigen::Vector3d moments = PrincipalMoments(properties);
+  const Eigen::Vector3d least =
+      kLeastOfSolid * PrincipalMoments(SolidOf(shapes_B, properties.mass));
+  if (moments[2] <= most && (moments.array() >= least.array()).all()) return "";
+  return fmt::format(
+      "principal moments {:.3g}, {:.3g}, {:.3g} kg m^2, wanted at least {:.3g}, {:.3g}, {:.3g} and "
+      "at most {:.3g} for {:g} kg in its shapes",
+      moments[0], moments[1], moments[2], least[0], least[1], least[2], most, properties.mass);
 }
 
 }  // namespace hires::geometry

@@ -138,6 +138,16 @@ void AddLevels(const RolloutSetup& setup, const std::vector<ActionCall>& actions
   }
 }
 
+/// Once for each kind.
+void AddNotesOfObjects(const RolloutSetup& setup, Report* report) {
+  std::set<std::string> told;
+  for (const world::ObjectState& object : setup.world_state.objects) {
+    const auto model = setup.scene->world.FindModel(object.model);
+    if (model == nullptr || !told.insert(base::ToLower(object.model)).second) continue;
+    report->caveats.insert(report->caveats.end(), model->notes.begin(), model->notes.end());
+  }
+}
+
 }  // namespace
 
 Validated ReadValidated(base::ParamReader in) {
@@ -174,6 +184,7 @@ void AddCaveats(const RolloutSetup& setup, const std::vector<base::ActionCall>& 
   for (std::string& caveat : CaveatsOf(setup, actions, validated)) {
     report->caveats.push_back(std::move(caveat));
   }
+  AddNotesOfObjects(setup, report);
   const bool drives = std::any_of(actions.begin(), actions.end(), [&](const ActionCall& action) {
     return skills::SpecOf(*setup.skills, action).driving != actions::Driving::kNone;
   });

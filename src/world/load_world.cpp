@@ -372,10 +372,9 @@ class WorldBuilder {
   std::set<std::string> kind_names_;            // lower case
 };
 
-ObjectModel LoadSdfObject(const std::string& path, const ResourceFinder& finder) {
-  LoadNotes notes;
-  const std::optional<sdf::Root> root = ReadSdf(path, finder, &notes);
-  notes.ThrowIfProblems(path);
+ObjectModel LoadSdfObject(const std::string& path, const ResourceFinder& finder, LoadNotes* notes) {
+  const std::optional<sdf::Root> root = ReadSdf(path, finder, notes);
+  notes->ThrowIfProblems(path);
   const sdf::Model* model = root ? root->Model() : nullptr;
   if (model == nullptr) {
     throw base::ConfigError(
@@ -387,10 +386,19 @@ ObjectModel LoadSdfObject(const std::string& path, const ResourceFinder& finder)
         Where(*model)));
   }
   MeshCache meshes;
-  ObjectModel object = LooseObjectOf(*model, {finder, &meshes, &notes});
-  for (const std::string& note : notes.Sentences())
-    base::Log(base::LogLevel::kWarn, fmt::format("object={} note=\"{}\"", object.name, note));
-  return object;
+  return LooseObjectOf(*model, {finder, &meshes, notes});
+}
+
+ObjectModel LoadObjectOf(const std::string& path, LoadNotes* notes) {
+  const std::filesystem::path folder = std::filesystem::absolute(path).parent_path();
+  // Models stand beside each other: model://other is found from models/this/model.sdf.
+  const ResourceFinder finder(ModelFoldersFor(path, {folder.parent_path().string()}));
+  const std::string ending = base::ToLower(std::filesystem::path(path).extension().string());
+  if (ending == ".urdf") return LoadUrdfObject(path, finder, notes);
+  if (ending == ".sdf") return LoadSdfObject(path, finder, notes);
+  if (ending == ".yaml") return LoadPlainObject(path);
+  throw base::ConfigError(
+      fmt::format("{}: an object file ends in .sdf, .urdf or .yaml; rename or convert it", path));
 }
 
 }  // namespace
@@ -415,15 +423,12 @@ World LoadWorldInParts(const std::string& sdf_path, const std::vector<std::strin
 }
 
 ObjectModel LoadObjectModel(const std::string& path) {
-  const std::filesystem::path folder = std::filesystem::absolute(path).parent_path();
-  // Models stand beside each other: model://other is found from models/this/model.sdf.
-  const ResourceFinder finder(ModelFoldersFor(path, {folder.parent_path().string()}));
-  const std::string ending = base::ToLower(std::filesystem::path(path).extension().string());
-  if (ending == ".urdf") return LoadUrdfObject(path, finder);
-  if (ending == ".sdf") return LoadSdfObject(path, finder);
-  if (ending == ".yaml") return LoadPlainObject(path);
-  throw base::ConfigError(
-      fmt::format("{}: an object file ends in .sdf, .urdf or .yaml; rename or convert it", path));
+  LoadNotes notes;
+  ObjectModel object = LoadObjectOf(path, &notes);
+  object.notes = notes.Sentences();
+  for (const std::string& note : object.notes)
+    base::Log(base::LogLevel::kWarn, fmt::format("object={} note=\"{}\"", object.name, note));
+  return object;
 }
 
 }  // namespace hires::world

@@ -17,6 +17,7 @@
 #include "geometry/mesh_units.h"
 #include "hires/base/error.h"
 #include "hires/geometry/mesh_reader.h"
+#include "world/mend_object.h"
 #include "world/sdf/link_mass.h"
 #include "world/sdf/model_links.h"
 #include "world/sdf/prune_sdf.h"
@@ -259,7 +260,16 @@ geometry::MassProperties MassOf(const ModelLinks& model) {
       parts.push_back(MassPropertiesOf(*link.link, link.X_ML));
     }
   }
-  return parts.size() == 1 ? parts.front() : Together(parts);
+  return parts.size() == 1 ? parts.front() : geometry::Together(parts);
+}
+
+/// Without shapes where something is wrong with all of them, which is told.
+ObjectModel ObjectOf(const sdf::Model& model, const ModelLinks& links,
+                     std::vector<geometry::Collision> shapes, LoadNotes* notes) {
+  ObjectModel object{model.Name(), MassOf(links), std::move(shapes)};
+  const std::string mended = object.collisions.empty() ? "" : MendInertia(&object);
+  if (!mended.empty()) notes->Add("model", mended, NotePlace(model));
+  return object;
 }
 
 }  // namespace
@@ -373,7 +383,7 @@ PlayedModel PlayedModelOf(const sdf::Model& model, const geometry::Pose3& X_MB, 
     return played;
   }
   try {
-    played.object = ObjectModel{model.Name(), MassOf(links), played.shapes.collisions};
+    played.object = ObjectOf(model, links, played.shapes.collisions, reading.notes);
   } catch (const base::ConfigError& error) {
     reading.notes->AddProblem(error.what());
   }
@@ -395,7 +405,8 @@ ObjectModel LooseObjectOf(const sdf::Model& model, const ModelReading& reading) 
                     "inertia and shapes",
                     where, obstacle.kind));
   }
-  ObjectModel object{model.Name(), MassOf(links), ShapesOf(links, {}, reading).collisions};
+  ObjectModel object =
+      ObjectOf(model, links, ShapesOf(links, {}, reading).collisions, reading.notes);
   reading.notes->ThrowIfProblems(where);
   return object;
 }

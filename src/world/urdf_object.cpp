@@ -11,6 +11,7 @@
 #include "hires/base/text.h"
 #include "world/console_bridge_capture.h"
 #include "world/files/missing_files.h"
+#include "world/mend_object.h"
 #include "world/sdf_file.h"
 #include "world/sdf_model.h"
 #include "world/xml_check.h"
@@ -136,7 +137,8 @@ std::vector<geometry::Collision> CollisionsOf(const urdf::Link& link, double fri
 
 }  // namespace
 
-ObjectModel LoadUrdfObject(const std::string& path, const ResourceFinder& finder) {
+ObjectModel LoadUrdfObject(const std::string& path, const ResourceFinder& finder,
+                           LoadNotes* notes) {
   const XmlLimits limits;
   const std::string text = base::PlainXml(base::ReadTextFile(path, limits.max_file_bytes), path);
   CheckXml(text, path, limits);
@@ -154,6 +156,8 @@ ObjectModel LoadUrdfObject(const std::string& path, const ResourceFinder& finder
     throw base::ConfigError(where +
                             ": has no <collision>, so it would fall through the floor; add one");
   }
+  const std::string mended = MendInertia(&object);
+  if (!mended.empty()) notes->Add("link", mended, fmt::format("{} '{}'", path, link.name));
   return object;
 }
 

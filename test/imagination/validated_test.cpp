@@ -115,6 +115,28 @@ TEST(CaveatsOfTest, NotesOfTheWorldAreCaveatsOfDrives) {
   EXPECT_THAT(report.caveats, testing::Contains(room.notes.front()));
 }
 
+TEST(CaveatsOfTest, NotesOfObjectsAreCaveatsWhereTheyAreThereOnceForEachKind) {
+  world::World room = Room();
+  auto model = std::make_shared<world::ObjectModel>(*room.models.at("mill"));
+  model->notes = {"1 link whose <inertial> no such body has; mill.urdf 'l'"};
+  room.models["mill"] = model;
+  auto absent = std::make_shared<world::ObjectModel>(*model);
+  absent->notes = {"what is not there says nothing"};
+  room.models["absent"] = absent;
+  RolloutSetup setup = RoomRollouts(room, "mill");
+  world::ObjectState second = setup.world_state.objects.at(0);
+  second.name = "mill2";
+  second.X_MO.translation.x() += 0.2;
+  setup.world_state.objects.push_back(second);
+  Report report;
+  AddCaveats(setup, {}, Wide(), &report);
+  const auto told = [&](const std::string& note) {
+    return std::count(report.caveats.begin(), report.caveats.end(), note);
+  };
+  EXPECT_EQ(told(model->notes.front()), 1);
+  EXPECT_EQ(told(absent->notes.front()), 0);
+}
+
 TEST(CaveatsOfTest, TheFloorThatMayBeDrawnCounts) {
   Validated validated = Wide();
   validated.floor_roughness = {0.001, "docs/floor.md"};

@@ -11,6 +11,7 @@ namespace hires::world::object_model_test {
 namespace {
 
 using testing::AllOf;
+using testing::ElementsAre;
 using testing::HasSubstr;
 using MeshPtr = std::shared_ptr<const geometry::TriangleMesh>;
 
@@ -203,6 +204,57 @@ TEST_F(ObjectModelTest, RefusesUrdfThatIsNoObject) {
   std::string heavy = CanUrdf(kCanShape);
   heavy.replace(heavy.find("izz='0.001'"), 11, "izz='0.100'");
   EXPECT_THAT(error_of(heavy), HasSubstr("triangle inequality"));
+}
+
+/// A can that is 0.24 m high and 0.04 m thick, as URDF and as SDF.
+std::string TallUrdf(const std::string& moment_x, const std::string& moment_z) {
+  return "<robot name='tall'><link name='l'><inertial><origin xyz='0 0 0.12'/><mass value='0.3'/>"
+         "<inertia ixx='" +
+         moment_x + "' ixy='0' ixz='0' iyy='" + moment_x + "' iyz='0' izz='" + moment_z +
+         "'/></inertial><collision><origin xyz='0 0 0.12'/><geometry><cylinder radius='0.02' "
+         "length='0.24'/></geometry></collision></link></robot>";
+}
+std::string TallSdf(const std::string& moment_x, const std::string& moment_z) {
+  return "<model name='tall'><link name='l'><inertial><pose>0 0 0.12 0 0 0</pose><mass>0.3</mass>"
+         "<inertia><ixx>" +
+         moment_x + "</ixx><iyy>" + moment_x + "</iyy><izz>" + moment_z +
+         "</izz></inertia></inertial><collision name='c'><pose>0 0 0.12 0 0 0</pose><geometry>"
+         "<cylinder><radius>0.02</radius><length>0.24</length></cylinder></geometry></collision>"
+         "</link></model>";
+}
+
+TEST_F(ObjectModelTest, AnInertiaThatNoSuchBodyHasBecomesTheSolidsAndIsSaid) {
+  const Eigen::Matrix3d solid = geometry::SolidInertia(geometry::Cylinder{0.02, 0.24}, 0.3);
+  for (const std::string wrong : {"1", "1e-7", "0.03"}) {
+    const ObjectModel urdf = LoadObjectModel(folder_.Write("tall.urdf", TallUrdf(wrong, wrong)));
+    const ObjectModel sdf =
+        LoadObjectModel(folder_.Write("tall.sdf", ModelFile(TallSdf(wrong, wrong))));
+    const World world = LoadWorld(folder_.Write("tall.world", WorldText(TallSdf(wrong, wrong))));
+    const ObjectModel& in_world = *world.ModelOf(world.initial.objects.at(0));
+    for (const ObjectModel* tall : {&urdf, &sdf, &in_world}) {
+      EXPECT_TRUE(tall->mass_properties.I_BBcm.isApprox(solid, 1e-9)) << wrong;
+      EXPECT_EQ(tall->mass_properties.mass, 0.3);
+      EXPECT_EQ(tall->mass_properties.p_BBcm, Eigen::Vector3d(0, 0, 0.12));
+    }
+    const auto says = ElementsAre(AllOf(HasSubstr("tall."), HasSubstr("principal moments"),
+                                        HasSubstr("solid of its shapes is taken, 6e-05, 0.00147")));
+    EXPECT_THAT(urdf.notes, says);
+    EXPECT_THAT(sdf.notes, says);
+    EXPECT_THAT(world.notes, says);
+  }
+}
+
+TEST_F(ObjectModelTest, AnInertiaThatABodyMayHaveStaysToTheBit) {
+  for (const std::string right : {"0.00147", "0.0005", "0.004"}) {
+    const ObjectModel urdf = LoadObjectModel(folder_.Write("tall.urdf", TallUrdf(right, "0.0001")));
+    EXPECT_EQ(urdf.mass_properties.I_BBcm(0, 0), std::stod(right));
+    EXPECT_EQ(urdf.mass_properties.I_BBcm(2, 2), 0.0001);
+    EXPECT_THAT(urdf.notes, testing::IsEmpty());
+    const ObjectModel sdf =
+        LoadObjectModel(folder_.Write("tall.sdf", ModelFile(TallSdf(right, "0.0001"))));
+    EXPECT_EQ(sdf.mass_properties.I_BBcm, urdf.mass_properties.I_BBcm);
+    EXPECT_THAT(sdf.notes, testing::IsEmpty());
+  }
 }
 
 TEST_F(ObjectModelTest, UrdfErrorsAreNotPrinted) {

@@ -38,6 +38,8 @@ std::string Body(const std::string& name, const std::string& inertial, const std
 }
 
 const char kGood[] =
+    "<inertial><mass>1</mass><inertia><ixx>.2</ixx><iyy>.2</iyy><izz>.2</izz></inertia></inertial>";
+const char kPlaceholder[] =
     "<inertial><mass>1</mass><inertia><ixx>1</ixx><iyy>1</iyy><izz>1</izz></inertia></inertial>";
 const char kBad[] =
     "<inertial><mass>1</mass><inertia><ixx>1</ixx><iyy>1</iyy><izz>9</izz></inertia></inertial>";
@@ -66,6 +68,8 @@ std::vector<Oddity> Oddities() {
        },
        ""},
       {"glued links", false, [](Name n) { return Jointed(n, "fixed", kGood); }, ""},
+      {"inertia of a larger body", false,
+       [](Name n) { return Loose(n, Body("l", kPlaceholder, kUnitBox)); }, "%s"},
       {"hinge", false, [](Name n) { return Jointed(n, "revolute", kBad); }, "%s"},
       {"no mass", false, [](Name n) { return Loose(n, Body("l", "", kUnitBox)); }, "%s"},
       {"parts", false,

@@ -9,7 +9,6 @@
 #include "hires/base/error.h"
 #include "hires/base/rng.h"
 #include "hires/geometry/angles.h"
-#include "world/sdf/link_mass.h"
 #include "world/sdf/load_notes.h"
 #include "world/sdf/model_folders.h"
 #include "world/sdf/polygon_cut.h"
@@ -101,25 +100,6 @@ TEST(CutIntoTrianglesTest, TrianglesCoverTheAreaBetweenTheLinesAndNoMore) {
 TEST(CutIntoTrianglesTest, LinesThatCrossGiveNothing) {
   EXPECT_TRUE(CutIntoTriangles({{{0, 0}, {1, 1}, {1, 0}, {0, 1}}}).empty());
   EXPECT_TRUE(CutIntoTriangles({{{0, 0}, {1, 1}}}).empty());
-}
-
-/// Two roads: put together at once, or in any order of pairs.
-TEST(TogetherTest, DoesNotDependOnTheOrder) {
-  base::Rng rng(3);
-  for (int round = 0; round < 100; ++round) {
-    std::vector<geometry::MassProperties> parts(3);
-    for (auto& part : parts) {
-      part.mass = rng.Uniform(0.1, 5.0);
-      for (int k = 0; k < 3; ++k) part.p_BBcm[k] = rng.Uniform(-1.0, 1.0);
-      part.I_BBcm = rng.Uniform(0.1, 1.0) * Eigen::Matrix3d::Identity();
-    }
-    const auto all = Together(parts);
-    const auto pairs = Together({parts[2], Together({parts[0], parts[1]})});
-    EXPECT_NEAR(all.mass, pairs.mass, 1e-12);
-    EXPECT_TRUE(all.p_BBcm.isApprox(pairs.p_BBcm, 1e-12));
-    EXPECT_TRUE(all.I_BBcm.isApprox(pairs.I_BBcm, 1e-12));
-    EXPECT_EQ(geometry::WhyUnphysical(all), "");
-  }
 }
 
 }  // namespace

@@ -1,6 +1,8 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <string>
+#include <vector>
 
 #include "hires/geometry/shape.h"
 
@@ -22,5 +24,24 @@ Eigen::Matrix3d SolidInertia(const Sphere& sphere, double mass);
 /// Positive mass, finite, symmetric, positive definite, triangle inequality of principal moments
 /// (with a relative slack of 1e-6). Empty if physical, else what is wrong.
 std::string WhyUnphysical(const MassProperties& properties);
+
+/// Of several things that are one body: masses added, inertias by Steiner's theorem.
+/// @pre not empty
+MassProperties Together(const std::vector<MassProperties>& parts);
+
+/// Of a body of that mass [kg] that is made of these shapes, of one density. A mesh counts as the
+/// box round it, as its surface may be open; what two shapes share counts twice.
+/// @pre shapes_B is not empty
+MassProperties SolidOf(const std::vector<Collision>& shapes_B, double mass);
+
+/// [kg m^2] About the centre of mass, from the smallest on.
+Eigen::Vector3d PrincipalMoments(const MassProperties& properties);
+
+/// Why no body that is made of these shapes has such an inertia; empty if one may. No principal
+/// moment is more than if all mass lay in the farthest corner of the shapes from the centre of
+/// mass; none is taken to be less than 1 % of the solid's, as of an inertia in other units.
+/// @pre WhyUnphysical is empty, shapes_B is not
+std::string WhyImplausible(const MassProperties& properties,
+                           const std::vector<Collision>& shapes_B);
 
 }  // namespace hires::geometry

@@ -21,6 +21,9 @@ struct ObjectModel {
   geometry::MassProperties mass_properties;
   std::vector<geometry::Collision> collisions;
   std::string concept_name{};  ///< of the ontology, as the catalogue says; empty: it says none
+  /// What people should know who trust an answer about it, as World::notes; of an object's file
+  /// alone, as those of a world's model are the world's. No part of the hash.
+  std::vector<std::string> notes{};
 };
 
 /// A body that never moves: wall, table, chair.
@@ -108,7 +111,8 @@ std::string SourceOf(const std::string& name, const World& world);
 World LoadWorld(const std::string& sdf_path, const std::vector<std::string>& model_path = {});
 
 /// Reads a single-link object from an SDF model (.sdf, model.sdf) or a URDF (.urdf), or a cylinder
-/// or box of given size and mass (.yaml: docs/command_line.md).
+/// or box of given size and mass (.yaml: docs/command_line.md). What is played otherwise than it is
+/// written is said in ObjectModel::notes and to base::Log.
 /// @throws base::ConfigError as LoadWorld, and as base::ParamReader.
 ObjectModel LoadObjectModel(const std::string& path);
 

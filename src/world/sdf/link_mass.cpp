@@ -12,7 +12,6 @@
 #include <sdf/Sphere.hh>
 #include <sstream>
 
-#include "hires/base/check.h"
 #include "hires/base/error.h"
 #include "hires/geometry/angles.h"
 #include "world/sdf/prune_sdf.h"
@@ -167,26 +166,7 @@ std::optional<geometry::MassProperties> AutomaticMassOf(const sdf::Link& link,
     parts.push_back({solid->mass, X_BC.translation, R_BC * solid->I_BBcm * R_BC.transpose()});
   }
   if (parts.empty()) return std::nullopt;
-  return parts.size() == 1 ? parts.front() : Together(parts);
-}
-
-geometry::MassProperties Together(const std::vector<geometry::MassProperties>& parts) {
-  HIRES_CHECK(!parts.empty(), "nothing has no mass properties");
-  geometry::MassProperties all;
-  all.mass = 0.0;
-  all.p_BBcm.setZero();
-  all.I_BBcm.setZero();
-  for (const geometry::MassProperties& part : parts) {
-    all.mass += part.mass;
-    all.p_BBcm += part.mass * part.p_BBcm;
-  }
-  all.p_BBcm /= all.mass;
-  for (const geometry::MassProperties& part : parts) {
-    const Eigen::Vector3d off = part.p_BBcm - all.p_BBcm;
-    all.I_BBcm += part.I_BBcm + part.mass * (off.squaredNorm() * Eigen::Matrix3d::Identity() -
-                                             off * off.transpose());
-  }
-  return all;
+  return parts.size() == 1 ? parts.front() : geometry::Together(parts);
 }
 
 }  // namespace hires::world

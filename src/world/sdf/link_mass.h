@@ -29,8 +29,4 @@ std::optional<geometry::MassProperties> AutomaticMassOf(const sdf::Link& link,
 /// has.
 geometry::MassProperties MassPropertiesOf(const sdf::Link& link, const geometry::Pose3& X_BL);
 
-/// Of several things that are one body: masses added, inertias by Steiner's theorem.
-/// @pre not empty
-geometry::MassProperties Together(const std::vector<geometry::MassProperties>& parts);
-
 }  // namespace hires::world
