@@ -4,11 +4,10 @@
 #include <tinyxml2.h>
 
 #include <algorithm>
-#include <cmath>
-#include <optional>
 #include <set>
 #include <vector>
 
+#include "base/files/urdf_friction.h"
 #include "hires/base/text.h"
 
 namespace hires::robot {
@@ -198,32 +197,17 @@ class OutlineReader {
                               told.size(), base::Join(told, "', '")));
   }
 
-  /// The friction coefficient in <mu1>0.5</mu1> or, in older files, <mu1 value="0.5"/>.
-  std::optional<double> FrictionIn(const XMLElement& gazebo, const char* tag) {
-    const XMLElement* element = gazebo.FirstChildElement(tag);
-    if (element == nullptr) return std::nullopt;
-    double mu = 0.0;
-    const bool read = element->Attribute("value") != nullptr
-                          ? element->QueryDoubleAttribute("value", &mu) == tinyxml2::XML_SUCCESS
-                          : element->QueryDoubleText(&mu) == tinyxml2::XML_SUCCESS;
-    if (read && std::isfinite(mu) && mu >= 0.0) return mu;
-    problems_.Add(element->GetLineNum(), fmt::format("<{}> holds no friction coefficient; wanted a "
-                                                     "finite number of at least 0",
-                                                     tag));
-    return std::nullopt;
-  }
-
   void ReadFriction() {
-    for (const XMLElement* gazebo = robot_->FirstChildElement("gazebo"); gazebo != nullptr;
-         gazebo = gazebo->NextSiblingElement("gazebo")) {
-      const char* link = gazebo->Attribute("reference");
-      if (link == nullptr || outline_.link_lines.count(link) == 0) continue;
-      for (const char* tag : {"mu1", "mu2"}) {
-        const std::optional<double> mu = FrictionIn(*gazebo, tag);
-        if (!mu) continue;
-        const auto [known, is_new] = outline_.friction.emplace(link, *mu);
-        if (!is_new) known->second = std::min(known->second, *mu);
-      }
+    base::UrdfFriction read = base::ReadUrdfFriction(*robot_);
+    for (const auto& [link, mu] : read.of_links) {
+      if (outline_.link_lines.count(link) > 0) outline_.friction[link] = mu;
+    }
+    read.wrong.insert(read.wrong.end(), read.endless.begin(), read.endless.end());
+    for (const base::UrdfFriction::Place& place : read.wrong) {
+      if (outline_.link_lines.count(place.link) == 0) continue;
+      problems_.Add(place.line, fmt::format("<{}> holds no friction coefficient; wanted a finite "
+                                            "number of at least 0",
+                                            place.element));
     }
   }
 

@@ -13,7 +13,7 @@ namespace hires::robot {
 struct UrdfOutline {
   std::map<std::string, int> link_lines;   ///< link name -> line in the file
   std::map<std::string, int> joint_lines;  ///< joint name -> line in the file
-  std::map<std::string, double> friction;  ///< link name -> smaller of <gazebo>'s mu1 and mu2
+  std::map<std::string, double> friction;  ///< by link: see base::ReadUrdfFriction
 
   // What is to be left out or put in for the rest to be read; empty if nothing is wrong.
   std::set<int> useless_links, useless_joints;  ///< the how manieth of its kind, from 0

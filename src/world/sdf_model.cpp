@@ -51,6 +51,16 @@ std::string WhereIs(const sdf::Collision& collision) {
   return fmt::format("{}: collision '{}'", PlaceOf(collision.Element()), collision.Name());
 }
 
+/// Of ODE's friction pyramid the smaller side, as a thing slips that way first.
+double FrictionOf(const sdf::Collision& collision) {
+  const double otherwise = geometry::Collision().friction;
+  const auto along = [&](const char* direction, double not_there) {
+    return NumberAt(collision.Element(), {"surface", "friction", "ode", direction}, not_there);
+  };
+  const double mu = along("mu", along("mu2", otherwise));
+  return std::min(mu, along("mu2", mu));
+}
+
 /// "hall.world:5 'door'" for notes.
 std::string NotePlace(const sdf::Model& model) {
   return fmt::format("{} '{}'", PlaceOf(model.Element()), model.Name());
@@ -112,8 +122,7 @@ void AppendCollision(const sdf::Collision& collision, const geometry::Pose3& X_B
     result.name = prefix + collision.Name() + part.suffix;
     result.shape = part.shape;
     result.X_BS = X_BC * part.X_CS;
-    result.friction =
-        NumberAt(collision.Element(), {"surface", "friction", "ode", "mu"}, result.friction);
+    result.friction = FrictionOf(collision);
     result.restitution =
         NumberAt(collision.Element(), {"surface", "bounce", "restitution_coefficient"}, 0.0);
     CheckCollision(result, where, kMaxWritten);
@@ -134,8 +143,7 @@ void AppendPlane(const sdf::Collision& collision, const geometry::Pose3& X_WL,
         "the floor; use a static box instead");
   }
   geometry::Collision floor;
-  floor.friction =
-      NumberAt(collision.Element(), {"surface", "friction", "ode", "mu"}, floor.friction);
+  floor.friction = FrictionOf(collision);
   CheckCollision(floor, where);
   shapes->floors.push_back({X_WS.translation.z(), floor.friction, where});
 }

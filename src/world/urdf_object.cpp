@@ -7,6 +7,7 @@
 #include <algorithm>
 
 #include "base/files/plain_xml.h"
+#include "base/files/urdf_friction.h"
 #include "hires/base/error.h"
 #include "hires/base/text.h"
 #include "world/console_bridge_capture.h"
@@ -75,20 +76,26 @@ geometry::MassProperties MassPropertiesOf(const urdf::Link& link, const std::str
   throw base::ConfigError(fmt::format("{}: {}; correct its <inertial>", where, wrong));
 }
 
-/// <gazebo reference="link"><mu1>0.5</mu1></gazebo>, which urdfdom skips.
-double FrictionOf(const std::string& text, const std::string& link, const std::string& path) {
+/// What urdfdom skips.
+double FrictionIn(const std::string& text, const std::string& link, const std::string& path,
+                  LoadNotes* notes) {
   tinyxml2::XMLDocument document;
   document.Parse(text.data(), text.size());
-  for (const auto* gazebo = document.RootElement()->FirstChildElement("gazebo"); gazebo != nullptr;
-       gazebo = gazebo->NextSiblingElement("gazebo")) {
-    const auto* mu = gazebo->FirstChildElement("mu1");
-    if (mu == nullptr || !gazebo->Attribute("reference", link.c_str())) continue;
-    double value = 0.0;
-    if (mu->QueryDoubleText(&value) == tinyxml2::XML_SUCCESS) return value;
-    throw base::ConfigError(fmt::format("{}:{}: <mu1> is no number; write a friction coefficient",
-                                        path, mu->GetLineNum()));
+  const base::UrdfFriction friction = base::ReadUrdfFriction(*document.RootElement());
+  for (const base::UrdfFriction::Place& place : friction.wrong) {
+    if (place.link != link) continue;
+    throw base::ConfigError(fmt::format("{}:{}: <{}> is no number; write a friction coefficient",
+                                        path, place.line, place.element));
   }
-  return 1.0;
+  for (const base::UrdfFriction::Place& place : friction.endless) {
+    if (place.link != link) continue;
+    notes->Add("element",
+               fmt::format("<{}> that is infinite or negative: {} is taken, by which nothing slips",
+                           place.element, base::kNoSlip),
+               fmt::format("{}:{} '{}'", path, place.line, link));
+  }
+  const auto found = friction.of_links.find(link);
+  return found == friction.of_links.end() ? geometry::Collision().friction : found->second;
 }
 
 std::string CollisionName(const urdf::Collision& collision, std::size_t index) {
@@ -151,7 +158,7 @@ ObjectModel LoadUrdfObject(const std::string& path, const ResourceFinder& finder
   const urdf::Link& link = *model->links_.begin()->second;
   const std::string where = fmt::format("{}: link '{}'", path, link.name);
   ObjectModel object{model->getName(), MassPropertiesOf(link, where), {}};
-  object.collisions = CollisionsOf(link, FrictionOf(text, link.name, path), path, finder);
+  object.collisions = CollisionsOf(link, FrictionIn(text, link.name, path, notes), path, finder);
   if (object.collisions.empty()) {
     throw base::ConfigError(where +
                             ": has no <collision>, so it would fall through the floor; add one");

@@ -103,11 +103,12 @@ std::vector<Defect> OfWorlds() {
        "%s"},
       {"pose of nothing", "", true,
        InWorld("<frame name='f_{0}'><pose relative_to='{0}'/></frame>"), "%s"},
-      {"friction", "mu", true,
+      {"restitution", "bounce", true,
        InWorld(model + "<link name='l'><collision name='c'><geometry><box><size>1 1 1</size></box>"
-                       "</geometry><surface><friction><ode><mu>-1</mu></ode></friction></surface>"
+                       "</geometry><surface><bounce><restitution_coefficient>2</"
+                       "restitution_coefficient></bounce></surface>"
                        "</collision></link></model>"),
-       "<mu>"},
+       "restitution is 2"},
   };
 }
 

@@ -108,6 +108,14 @@ TEST(RobotModel, TakesTheSmallerFrictionOfGazebo) {
   EXPECT_EQ(model.links[1].collisions[0].friction, 1.0);
 }
 
+TEST(RobotModel, TakesTheFrictionOfContacts) {
+  std::string text = kRobot;
+  const std::string link = "<link name=\"arm\">";
+  text.replace(text.find(link), link.size(),
+               link + "<contact><lateral_friction value=\"0.1\"/></contact>");
+  EXPECT_EQ(ParseRobotModel(text, "small.urdf").links[3].collisions[0].friction, 0.1);
+}
+
 TEST(ForwardKinematics, RestsAtTheLimitNearestToZero) {
   const RobotModel model = Small();
   ExpectAt(PoseOf(model, "mast", {}), 1.0, 0.0, 0.1);

@@ -391,10 +391,59 @@ TEST_F(LoadWorldTest, RefusesSurfacesOutOfRange) {
   const auto error_of = [&](const std::string& surface) {
     return ErrorOf(StaticModel("a", LinkWithShape(kUnitBox, "<surface>" + surface + "</surface>")));
   };
-  EXPECT_THAT(error_of("<friction><ode><mu>-1</mu></ode></friction>"),
-              AllOf(HasSubstr("test.world:3"), HasSubstr("mu"), HasSubstr("-1")));
+  EXPECT_THAT(error_of("<friction><ode><mu>low</mu></ode></friction>"),
+              AllOf(HasSubstr("test.world:3"), HasSubstr("mu"), HasSubstr("low")));
   EXPECT_THAT(error_of("<bounce><restitution_coefficient>1.5</restitution_coefficient></bounce>"),
               AllOf(HasSubstr("test.world:3"), HasSubstr("restitution_coefficient")));
+}
+
+TEST_F(LoadWorldTest, FrictionIsTheSmallerOfBothDirectionsAndEndlessOnesAreLarge) {
+  const auto load = [&](const std::string& friction) {
+    const std::string surface = "<surface><friction>" + friction + "</friction></surface>";
+    return Load(
+        StaticModel("a", LinkWithShape(kUnitBox, surface)) +
+        StaticModel("floor", LinkWithShape("<plane><normal>0 0 1</normal></plane>", surface)));
+  };
+  const auto ode = [](const std::string& values) { return "<ode>" + values + "</ode>"; };
+  const std::vector<std::pair<std::string, double>> plain{{"<mu>0.3</mu>", 0.3},
+                                                          {"<mu>0.3</mu><mu2>0.3</mu2>", 0.3},
+                                                          {"<mu>1</mu><mu2>0.05</mu2>", 0.05},
+                                                          {"<mu>0.05</mu><mu2>1</mu2>", 0.05},
+                                                          {"<mu>5</mu>", 5.0},
+                                                          {"<mu2>0.2</mu2>", 0.2},
+                                                          {"<mu>0</mu><mu2>2</mu2>", 0.0},
+                                                          {"", 1.0}};
+  for (const auto& [values, wanted] : plain) {
+    const World world = load(ode(values));
+    EXPECT_EQ(world.statics.at(0).collisions.at(0).friction, wanted) << values;
+    EXPECT_EQ(world.floor_friction, wanted) << values;
+    EXPECT_THAT(world.notes, testing::IsEmpty()) << values;
+  }
+  for (const std::string endless : {"inf", "Inf", "-1", "1e400"}) {
+    const World world = load(ode("<mu>" + endless + "</mu><mu2>" + endless + "</mu2>"));
+    EXPECT_EQ(world.statics.at(0).collisions.at(0).friction, 1000.0) << endless;
+    EXPECT_EQ(world.floor_friction, 1000.0) << endless;
+    EXPECT_THAT(world.notes,
+                ElementsAre(AllOf(HasSubstr("2 collisions"), HasSubstr("test.world:3 'c'"),
+                                  HasSubstr("infinite or negative: 1000 is taken"))));
+    EXPECT_EQ(load(ode("<mu>0.4</mu><mu2>" + endless + "</mu2>")).floor_friction, 0.4);
+  }
+}
+
+TEST_F(LoadWorldTest, FrictionThatIsNotPlayedIsSaidWhereItMatters) {
+  const auto notes_of = [&](const std::string& friction) {
+    return Load(StaticModel("a", LinkWithShape(kUnitBox, "<surface><friction>" + friction +
+                                                             "</friction></surface>")))
+        .notes;
+  };
+  EXPECT_THAT(
+      notes_of("<ode><mu>0.4</mu></ode><bullet><friction>0.4</friction><friction2>0.4"
+               "</friction2></bullet><torsional><patch_radius>0</patch_radius></torsional>"),
+      testing::IsEmpty());
+  EXPECT_THAT(notes_of("<bullet><friction>0.05</friction></bullet>"),
+              ElementsAre(HasSubstr("friction in <bullet> differs")));
+  EXPECT_THAT(notes_of("<torsional><patch_radius>0.01</patch_radius></torsional>"),
+              ElementsAre(HasSubstr("<torsional> friction is left out")));
 }
 
 TEST_F(LoadWorldTest, RefusesPlanesThatAreNoFloor) {

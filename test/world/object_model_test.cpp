@@ -1,6 +1,10 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <string>
+#include <tuple>
+#include <vector>
+
 #include "hires/base/error.h"
 #include "hires/world/object_catalogue.h"
 #include "hires/world/world.h"
@@ -162,6 +166,39 @@ TEST_F(ObjectModelTest, UrdfGivesMassShapeAndFriction) {
   EXPECT_EQ(std::get<geometry::Cylinder>(can.collisions[0].shape).length, 0.2);
   EXPECT_NEAR(geometry::YawOf(can.collisions[0].X_BS.rotation), 1.0, 1e-12);
   EXPECT_EQ(can.collisions[0].friction, 0.6);
+}
+
+/// What simulators of the field read.
+TEST_F(ObjectModelTest, UrdfFrictionIsTheSmallestThatIsSaidInWhateverForm) {
+  const auto load = [&](const std::string& in_link, const std::string& in_gazebo) {
+    return LoadObjectModel(folder_.Write(
+        "can.urdf",
+        CanUrdf(kCanShape + in_link, "<gazebo reference='body'>" + in_gazebo +
+                                         "</gazebo>"
+                                         "<gazebo reference='other'><mu1>0.001</mu1></gazebo>")));
+  };
+  const std::string contact = "<contact><lateral_friction value='0.02'/></contact>";
+  const std::vector<std::tuple<std::string, std::string, double>> cases{
+      {"", "", 1.0},
+      {contact, "", 0.02},
+      {contact, "<mu1>0.3</mu1>", 0.02},
+      {"", "<mu1>1.0</mu1><mu2>0.05</mu2>", 0.05},
+      {"", "<mu2>0.05</mu2>", 0.05},
+      {"", "<mu1 value='0.3'/>", 0.3},
+      {"", "<mu1 value='0.3'/><mu2 value='0.2'/>", 0.2},
+      {"",
+       "<collision><surface><friction><ode><mu>0.05</mu></ode></friction></surface></collision>",
+       0.05}};
+  for (const auto& [in_link, in_gazebo, wanted] : cases) {
+    const ObjectModel can = load(in_link, in_gazebo);
+    EXPECT_EQ(can.collisions.at(0).friction, wanted) << in_link << in_gazebo;
+    EXPECT_THAT(can.notes, testing::IsEmpty()) << in_link << in_gazebo;
+  }
+  for (const std::string endless : {"inf", "-1"}) {
+    const ObjectModel can = load("", "<mu1>" + endless + "</mu1>");
+    EXPECT_EQ(can.collisions.at(0).friction, 1000.0);
+    EXPECT_THAT(can.notes, ElementsAre(AllOf(HasSubstr("<mu1>"), HasSubstr("can.urdf:6"))));
+  }
 }
 
 TEST_F(ObjectModelTest, UrdfAndSdfOfOneObjectAgree) {

@@ -171,13 +171,19 @@ std::vector<Oddity> Oddities() {
          return fmt::format("<frame name='{}'><pose relative_to='gone_{}'/></frame>", n, n);
        },
        "gone_%s"},
-      {"friction", true,
+      {"endless friction", false,
        [](Name n) {
          return StaticModel(n, LinkWithShape(kUnitBox,
-                                             "<surface><friction><ode><mu>-1</mu></ode>"
+                                             "<surface><friction><ode><mu>inf</mu></ode>"
                                              "</friction></surface>"));
        },
-       "<mu>"},
+       "infinite or negative: 1000 is taken"},
+      {"friction", true,
+       [](Name n) {
+         return StaticModel(n, LinkWithShape(kUnitBox, "<surface><friction><ode><mu2>m_" + n +
+                                                           "</mu2></ode></friction></surface>"));
+       },
+       "<mu2> in <ode> is 'm_%s', wanted 1 number"},
   };
 }
 

@@ -70,11 +70,12 @@ std::vector<std::string> LinksBelow(const RobotModel& model, const std::string& 
 
 /// Reads a URDF. Collision meshes (package:// by ROS_PACKAGE_PATH or a folder above the file,
 /// file://, or relative to the file) are loaded; a missing one is an error. Friction comes from
-/// `<gazebo reference="link">` mu1 and mu2, the smaller of both; 1 where there is none.
-/// A mass that is not positive, inertias that are not positive definite and what is no number leave
-/// their `inertial` out; principal moments that break the triangle inequality, as invented ones of
-/// tiny frames do, are kept. One warning names the links of both. Joints that float are fixed,
-/// those that need limits and have none are held at 0, each kind with a warning.
+/// `<gazebo reference="link">` (mu1, mu2) and the link's `<contact>` (lateral_friction), the
+/// smallest of them; 1 where there is none. A mass that is not positive, inertias that are not
+/// positive definite and what is no number leave their `inertial` out; principal moments that break
+/// the triangle inequality, as invented ones of tiny frames do, are kept. One warning names the
+/// links of both. Joints that float are fixed, those that need limits and have none are held at 0,
+/// each kind with a warning.
 /// @throws base::ConfigError with all that is wrong: file, element, line and remedy.
 RobotModel LoadRobotModel(const std::string& urdf_path);
 /// The same for text; `where` is the file's path in messages and for relative meshes.

@@ -18,11 +18,17 @@ using tinyxml2::XMLElement;
 /// How many numbers an element holds; 0: none, or it is read elsewhere.
 std::size_t NumbersWanted(const XMLElement& element, const std::string& parent) {
   static const std::map<std::pair<std::string, std::string>, std::size_t> wanted{
-      {{"box", "size"}, 3},        {{"plane", "size"}, 2},
-      {{"plane", "normal"}, 3},    {{"cylinder", "radius"}, 1},
-      {{"cylinder", "length"}, 1}, {{"sphere", "radius"}, 1},
-      {{"mesh", "scale"}, 3},      {{"world", "gravity"}, 3},
-      {{"ode", "mu"}, 1},          {{"bounce", "restitution_coefficient"}, 1}};
+      {{"box", "size"}, 3},
+      {{"plane", "size"}, 2},
+      {{"plane", "normal"}, 3},
+      {{"cylinder", "radius"}, 1},
+      {{"cylinder", "length"}, 1},
+      {{"sphere", "radius"}, 1},
+      {{"mesh", "scale"}, 3},
+      {{"world", "gravity"}, 3},
+      {{"ode", "mu"}, 1},
+      {{"ode", "mu2"}, 1},
+      {{"bounce", "restitution_coefficient"}, 1}};
   if (element.Name() == std::string("pose")) {
     const char* format = element.Attribute("rotation_format");
     return format != nullptr && format == std::string("quat_xyzw") ? 7 : 6;

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "hires/base/text.h"
+#include "world/sdf/mend_friction.h"
 #include "world/sdf/prune_sdf.h"
 
 namespace hires::world {
@@ -107,6 +108,7 @@ void MendCollisions(XMLElement* link, const std::string& path, LoadNotes* notes)
   for (XMLElement* collision : ChildrenOf(link, "collision")) {
     const std::string why = WhyGhost(collision);
     if (why.empty()) {
+      MendFriction(collision, path, notes);
       SplitShapes(collision, path, notes);
       continue;
     }

@@ -53,7 +53,7 @@ const std::map<std::string, Rule>& Rules() {
       {"joint", {{"parent", "child", "pose"}, {}}},
       {"surface", {{"friction", "bounce"}, {}}},
       {"friction", {{"ode"}, {}}},
-      {"ode", {{"mu"}, {}}},
+      {"ode", {{"mu", "mu2"}, {}}},
       {"bounce", {{"restitution_coefficient"}, {}}},
   };
   return rules;
