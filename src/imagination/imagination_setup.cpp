@@ -21,6 +21,8 @@
 #include "imagination/area_file.h"
 #include "imagination/physics_hash.h"
 #include "imagination/uncertainty_layers.h"
+#include "world/content_hash.h"
+#include "world/mend_object.h"
 
 namespace hires::imagination {
 namespace {
@@ -126,6 +128,34 @@ physics::PhysicsParams ReadPhysics(ParamReader in) {
 
 constexpr double kWallHeight = 2.5;  // [m] of what a map has
 
+bool AreOneKind(const world::ObjectModel& a, const world::ObjectModel& b) {
+  base::Hasher one, other;
+  world::AddTo(&one, a);
+  world::AddTo(&other, b);
+  return one.value() == other.value();
+}
+
+/// A kind of the world's own that has the name of another one, which may differ in its origin
+/// alone, goes on under a name that is free.
+void KeepApart(const world::ObjectModel& other, world::World* world) {
+  const auto known = world->models.find(other.name);
+  const auto is_of_it = [&](const world::ObjectState& object) {
+    return object.model == other.name;
+  };
+  const auto& objects = world->initial.objects;
+  const bool is_used = std::any_of(objects.begin(), objects.end(), is_of_it);
+  if (known == world->models.end() || !is_used || AreOneKind(*known->second, other)) return;
+  std::string free = other.name;
+  for (int i = 2; world->FindModel(free) != nullptr; ++i)
+    free = fmt::format("{}_{}", other.name, i);
+  auto renamed = std::make_shared<world::ObjectModel>(*known->second);
+  renamed->name = free;
+  world->models[free] = std::move(renamed);
+  for (world::ObjectState& object : world->initial.objects) {
+    if (is_of_it(object)) object.model = free;
+  }
+}
+
 /// An object of one's own must not become what others are called.
 void RefuseTaken(const world::ObjectModel& model, const std::string& path,
                  const world::World& world, const std::map<std::string, std::string>& instances) {
@@ -137,15 +167,16 @@ void RefuseTaken(const world::ObjectModel& model, const std::string& path,
         fmt::format("{}: the object is called '{}', wanted letters, digits and _; rename it", path,
                     model.name));
   }
-  world::World one, other;
   const auto known = world.models.find(model.name);
+  bool is_other = false;
   if (known != world.models.end()) {
-    one.models[model.name] = known->second;
-    other.models[model.name] = std::make_shared<const world::ObjectModel>(model);
+    world::ObjectModel standing = *known->second;  // a world's model keeps its origin
+    world::PutOriginAtUnderside(&standing);
+    is_other = !AreOneKind(standing, model);
   }
   const auto instance = instances.find(base::ToLower(model.name));
   const bool is_instance = instance != instances.end() && instance->second != model.name;
-  if (is_instance || one.ComputeHash() != other.ComputeHash()) {
+  if (is_instance || is_other) {
     throw base::ConfigError(fmt::format(
         "{}: the object is called '{}', as another one is in world or catalogue; rename it", path,
         model.name));
@@ -162,6 +193,7 @@ world::World LoadWorldWithObjects(const SetupConfig& config,
   if (map) world::AddAreas(config.areas, &world);
   const auto add = [&](const std::string& instance,
                        const std::shared_ptr<const world::ObjectModel>& model) {
+    KeepApart(*model, &world);
     (*object_models)[base::ToLower(instance)] = model->name;
     world.models[model->name] = model;
   };

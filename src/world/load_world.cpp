@@ -17,6 +17,7 @@
 #include "world/content_hash.h"
 #include "world/floor_level.h"
 #include "world/load_world_in_parts.h"
+#include "world/mend_object.h"
 #include "world/plain_object.h"
 #include "world/sdf/model_folders.h"
 #include "world/sdf_file.h"
@@ -425,6 +426,8 @@ World LoadWorldInParts(const std::string& sdf_path, const std::vector<std::strin
 ObjectModel LoadObjectModel(const std::string& path) {
   LoadNotes notes;
   ObjectModel object = LoadObjectOf(path, &notes);
+  const std::string moved = PutOriginAtUnderside(&object);
+  if (!moved.empty()) notes.Add("object", moved, fmt::format("{} '{}'", path, object.name));
   object.notes = notes.Sentences();
   for (const std::string& note : object.notes)
     base::Log(base::LogLevel::kWarn, fmt::format("object={} note=\"{}\"", object.name, note));

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
+
 namespace hires::world {
 
 std::string MendInertia(ObjectModel* object) {
@@ -14,6 +16,22 @@ std::string MendInertia(ObjectModel* object) {
       "whose <inertia> no such body has ({}): that of a solid of its shapes is taken, {:.3g}, "
       "{:.3g}, {:.3g} kg m^2",
       why, taken[0], taken[1], taken[2]);
+}
+
+std::string PutOriginAtUnderside(ObjectModel* object) {
+  constexpr double kRounding = 1e-6, kWorthSaying = 1e-3;  // [m]
+  geometry::Aabb bounds;
+  for (const geometry::Collision& shape : object->collisions)
+    bounds.Include(geometry::BoundsOf(shape.shape, shape.X_BS));
+  const double lowest = bounds.lower.z();
+  if (object->collisions.empty() || std::abs(lowest) <= kRounding) return "";
+  object->mass_properties.p_BBcm.z() -= lowest;
+  for (geometry::Collision& shape : object->collisions) shape.X_BS.translation.z() -= lowest;
+  if (std::abs(lowest) <= kWorthSaying) return "";
+  return fmt::format(
+      "whose origin is {:.3f} m {} its lowest point: it stands on that point, from which its poses "
+      "count here",
+      std::abs(lowest), lowest < 0.0 ? "above" : "below");
 }
 
 }  // namespace hires::world

@@ -422,6 +422,37 @@ TEST(SetupHashTest, WorldObjectsAndParametersMatter) {
   EXPECT_NE(LoadImaginationSetup(with_more).world_hash, setup.world_hash);
 }
 
+/// A mill with its origin in its middle, once in the world and once as an object of its own file or
+/// of the catalogue, where its origin is at its underside.
+TEST(OwnObjectTest, AKindOfTheWorldKeepsItsOriginBesideTheFileOfTheSame) {
+  std::string mill = SceneFile::MillSdf("jug", 0.14);
+  mill.replace(mill.find("0 0 0.137"), 9, "0 0 0");
+  for (const bool is_of_catalogue : {true, false}) {
+    SceneFile file;
+    file.folder.Write("models/jug/model.sdf", mill);
+    file.folder.Write("models/jug/model.config",
+                      "<?xml version=\"1.0\"?><model><name>jug</name><sdf version=\"1.7\">model.sdf"
+                      "</sdf></model>");
+    std::string hall = HallSdf();
+    hall.insert(hall.find("<frame"),
+                "<include><uri>model://jug</uri><name>jug7</name><pose>1 1 0.137 0 0 0</pose>"
+                "</include>");
+    file.root["world"] = file.folder.Write("hall.world", hall);
+    if (is_of_catalogue) file.folder.Write("objects.yaml", "mill1: mill\njug1: jug\n");
+    SetupConfig config = file.Read();
+    if (!is_of_catalogue)
+      config.extra_objects = {(file.folder.path() / "models/jug/model.sdf").string()};
+    const ImaginationSetup setup = LoadImaginationSetup(config);
+    const world::World& world = setup.scene->world;
+    const auto lowest = [](const world::ObjectModel& model) {
+      const geometry::Collision& shape = model.collisions.at(0);
+      return geometry::BoundsOf(shape.shape, shape.X_BS).lower.z();
+    };
+    EXPECT_NEAR(lowest(*world.ModelOf(*world.initial.Find("jug7"))), -0.137, 1e-9);
+    EXPECT_NEAR(lowest(*world.RequireModel("jug")), 0.0, 1e-9);
+  }
+}
+
 TEST(SetupHashTest, TheRobotMattersForItsOwnHash) {
   const SceneFile file;
   YAML::Node robot = YAML::LoadFile(Root() + "/config/robots/cart.yaml");

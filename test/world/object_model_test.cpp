@@ -1,6 +1,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <string>
 #include <tuple>
 #include <vector>
@@ -291,6 +292,64 @@ TEST_F(ObjectModelTest, AnInertiaThatABodyMayHaveStaysToTheBit) {
         LoadObjectModel(folder_.Write("tall.sdf", ModelFile(TallSdf(right, "0.0001"))));
     EXPECT_EQ(sdf.mass_properties.I_BBcm, urdf.mass_properties.I_BBcm);
     EXPECT_THAT(sdf.notes, testing::IsEmpty());
+  }
+}
+
+/// A can of 0.12 m whose middle is at this height over its origin, as URDF and as SDF.
+std::string CanWithMiddleAt(double z, bool is_urdf) {
+  if (is_urdf) {
+    return fmt::format(
+        "<robot name='can'><link name='l'><inertial><origin xyz='0 0 {0}'/><mass value='0.3'/>"
+        "<inertia ixx='0.0005' ixy='0' ixz='0' iyy='0.0005' iyz='0' izz='0.0002'/></inertial>"
+        "<collision><origin xyz='0 0 {0}'/><geometry><cylinder radius='0.03' length='0.12'/>"
+        "</geometry></collision></link></robot>",
+        z);
+  }
+  return fmt::format(
+      "<model name='can'><pose>1 2 3 0 0 0</pose><link name='l'><pose>0 0 {} 0 0 0</pose><inertial>"
+      "<mass>0.3</mass><inertia><ixx>0.0005</ixx><iyy>0.0005</iyy><izz>0.0002</izz></inertia>"
+      "</inertial><collision name='c'><geometry><cylinder><radius>0.03</radius><length>0.12"
+      "</length></cylinder></geometry></collision></link></model>",
+      z);
+}
+
+TEST_F(ObjectModelTest, AnObjectOfAFileStandsOnItsLowestPointWhereverItsOriginIs) {
+  for (const bool is_urdf : {true, false}) {
+    for (const double middle : {-0.3, -0.06, 0.0, 0.0595, 0.06, 0.0600001, 0.11, 5.0}) {
+      const std::string text = CanWithMiddleAt(middle, is_urdf);
+      const ObjectModel can = LoadObjectModel(
+          folder_.Write(is_urdf ? "can.urdf" : "can.sdf", is_urdf ? text : ModelFile(text)));
+      const geometry::Collision& shape = can.collisions.at(0);
+      EXPECT_NEAR(geometry::BoundsOf(shape.shape, shape.X_BS).lower.z(), 0.0, 1e-6) << middle;
+      EXPECT_TRUE(can.mass_properties.p_BBcm.isApprox(shape.X_BS.translation, 1e-9)) << middle;
+      const double off = middle - 0.06;
+      if (std::abs(off) < 1e-3) {
+        EXPECT_THAT(can.notes, testing::IsEmpty()) << middle;
+      } else {
+        EXPECT_THAT(can.notes, ElementsAre(AllOf(HasSubstr(fmt::format("{:.3f} m", std::abs(off))),
+                                                 HasSubstr(off < 0.0 ? "above" : "below"),
+                                                 HasSubstr("'can'"))))
+            << middle;
+      }
+    }
+  }
+}
+
+TEST_F(ObjectModelTest, AModelOfAWorldKeepsItsOrigin) {
+  const World world = LoadWorld(folder_.Write("w.world", WorldText(CanWithMiddleAt(0.0, false))));
+  const ObjectState& can = world.initial.objects.at(0);
+  EXPECT_EQ(can.X_MO.translation.z(), 3.0);
+  EXPECT_EQ(world.ModelOf(can)->collisions.at(0).X_BS.translation.z(), 0.0);
+}
+
+TEST_F(ObjectModelTest, ObjectsOfTheCatalogueStandOnTheirOriginToTheBit) {
+  for (const auto& [instance, model] :
+       LoadCatalogueModels(HIRES_SOURCE_DIR "/worlds/objects.yaml")) {
+    geometry::Aabb bounds;
+    for (const geometry::Collision& shape : model->collisions)
+      bounds.Include(geometry::BoundsOf(shape.shape, shape.X_BS));
+    EXPECT_EQ(bounds.lower.z(), 0.0) << instance;
+    EXPECT_THAT(model->notes, testing::IsEmpty()) << instance;
   }
 }
 

@@ -14,8 +14,8 @@
 
 namespace hires::world {
 
-/// One kind of loose object: a single rigid body. Origin B lies where its model file puts it (ours:
-/// centre of the supporting face).
+/// One kind of loose object: a single rigid body. Origin B lies at the height of its lowest point
+/// (ours: centre of the supporting face); of a world's model where its file puts it.
 struct ObjectModel {
   std::string name;
   geometry::MassProperties mass_properties;
@@ -111,8 +111,9 @@ std::string SourceOf(const std::string& name, const World& world);
 World LoadWorld(const std::string& sdf_path, const std::vector<std::string>& model_path = {});
 
 /// Reads a single-link object from an SDF model (.sdf, model.sdf) or a URDF (.urdf), or a cylinder
-/// or box of given size and mass (.yaml: docs/command_line.md). What is played otherwise than it is
-/// written is said in ObjectModel::notes and to base::Log.
+/// or box of given size and mass (.yaml: docs/command_line.md). Where its origin is not at the
+/// height of its lowest point, it is put there. What is played otherwise than it is written is said
+/// in ObjectModel::notes and to base::Log.
 /// @throws base::ConfigError as LoadWorld, and as base::ParamReader.
 ObjectModel LoadObjectModel(const std::string& path);
 
