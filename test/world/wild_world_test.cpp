@@ -80,6 +80,57 @@ class WildWorldTest : public testing::Test {
   std::string log_;
 };
 
+// --- URDFs that are included ---------------------------------------------------------------------
+
+/// A rack of two links, and what its links have beside their shapes.
+std::string RackUrdf(const std::string& joint_type, const std::string& in_foot,
+                     const std::string& in_board) {
+  return "<robot name='rack'><link name='base'/><link name='foot'>" + in_foot +
+         "<collision><origin xyz='0 0 0.5'/><geometry><box size='0.1 0.1 "
+         "1'/></geometry></collision>"
+         "</link><link name='board'>" +
+         in_board +
+         "<collision><geometry><box size='0.5 0.5 0.02'/></geometry></collision></link>"
+         "<joint name='j' type='fixed'><parent link='base'/><child link='foot'/></joint>"
+         "<joint name='k' type='" +
+         joint_type +
+         "'><parent link='foot'/><child link='board'/><origin xyz='0 0 1'/><axis xyz='0 0 1'/>"
+         "<limit lower='-1' upper='1' velocity='1' effort='1'/></joint></robot>";
+}
+
+TEST_F(WildWorldTest, LinksOfUrdfsWithoutMassStandWithTheOthers) {
+  const std::string mass =
+      "<inertial><mass value='2'/><inertia ixx='0.1' ixy='0' ixz='0' iyy='0.1' iyz='0' izz='0.1'/>"
+      "</inertial>";
+  const std::string none =
+      "<inertial><mass value='0'/><inertia ixx='0' ixy='0' ixz='0' iyy='0' "
+      "iyz='0' izz='0'/></inertial>";
+  folder_.Write("models/rack/model.config",
+                "<model><name>rack</name><version>1.0</version><sdf version='1.7'>model.urdf</sdf>"
+                "</model>");
+  for (const std::string joint : {"fixed", "revolute"}) {
+    for (const std::string& in_foot : {std::string(), none, mass}) {
+      for (const std::string& in_board : {std::string(), none, mass}) {
+        folder_.Write("models/rack/model.urdf", RackUrdf(joint, in_foot, in_board));
+        const World world = Load("<include><uri>model://rack</uri><static>true</static></include>");
+        ASSERT_EQ(world.statics.size(), 1u) << joint << in_foot << in_board;
+        EXPECT_EQ(world.statics[0].collisions.size(), 2u) << joint << in_foot << in_board;
+        EXPECT_THAT(world.notes, IsEmpty());
+      }
+    }
+  }
+}
+
+TEST_F(WildWorldTest, AUrdfOfNoMassThatIsNotStaticStandsStillForThatReason) {
+  folder_.Write("models/rack/model.config",
+                "<model><name>rack</name><version>1.0</version><sdf version='1.7'>model.urdf</sdf>"
+                "</model>");
+  folder_.Write("models/rack/model.urdf", RackUrdf("fixed", "", ""));
+  const World world = Load("<include><uri>model://rack</uri></include>");
+  ASSERT_EQ(world.statics.size(), 1u);
+  EXPECT_THAT(world.notes, ElementsAre(HasSubstr("without mass or inertia")));
+}
+
 // --- what stands still ---------------------------------------------------------------------------
 
 TEST_F(WildWorldTest, InertialsOfWhatStandsStillAreNotRead) {

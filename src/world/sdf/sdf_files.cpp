@@ -5,9 +5,6 @@
 
 #include <algorithm>
 #include <filesystem>
-#include <sdf/Element.hh>
-#include <sdf/SDFImpl.hh>
-#include <sdf/parser.hh>
 
 #include "base/files/plain_xml.h"
 #include "hires/base/error.h"
@@ -16,21 +13,12 @@
 #include "world/sdf/line_printer.h"
 #include "world/sdf/pose_chains.h"
 #include "world/sdf/prune_sdf.h"
+#include "world/sdf/urdf_model.h"
 
 namespace hires::world {
 namespace {
 
 using tinyxml2::XMLElement;
-
-/// libsdformat's own way from URDF.
-std::string SdfTextOfUrdf(const std::string& path) {
-  sdf::Errors errors;
-  const sdf::SDFPtr document = sdf::readFile(path, errors);
-  if (document != nullptr && errors.empty() && document->Root() != nullptr)
-    return document->Root()->ToString("");
-  throw base::ConfigError(fmt::format("{}: this URDF cannot be included: {}", path,
-                                      errors.empty() ? "it is not valid" : errors[0].Message()));
-}
 
 void CollectNames(const XMLElement& element, SdfFile* file) {
   file->elements.insert(element.Name());
@@ -105,10 +93,11 @@ class Walk {
     tinyxml2::XMLDocument document;
     const std::string text = base::ReadTextFile(path, limits_.max_file_bytes);
     const bool is_main = open_files_.size() == 1;
-    ParseXml(base::PlainXml(text, path), path, limits_, &document);
+    const std::string plain = base::PlainXml(text, path);
+    ParseXml(plain, path, limits_, &document);
     if (document.RootElement() == nullptr) return {};
     if (!is_main && document.RootElement()->Name() == std::string("robot"))
-      ParseXml(base::PlainXml(SdfTextOfUrdf(path), path), path, limits_, &document);
+      ParseXml(base::PlainXml(SdfTextOfUrdf(plain, path), path), path, limits_, &document);
     SdfFile file;
     file.root = document.RootElement()->Name();
     if (file.root != "sdf") return file;
