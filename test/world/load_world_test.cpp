@@ -382,7 +382,7 @@ TEST_F(LoadWorldTest, RefusesShapesItCannotHold) {
       AllOf(HasSubstr("test.world:3: collision 'c'"), HasSubstr("<torus> is not supported")));
   EXPECT_THAT(error_of("<heightmap><uri>hills.png</uri></heightmap>"),
               AllOf(HasSubstr("<heightmap>"), HasSubstr("mesh")));
-  EXPECT_THAT(error_of("<box><size>1 0 1</size></box>"), HasSubstr("test.world"));
+  EXPECT_THAT(error_of("<box><size>1 -1 1</size></box>"), HasSubstr("test.world"));
   EXPECT_THAT(error_of("<sphere><radius>-1</radius></sphere>"), HasSubstr("test.world"));
   EXPECT_THAT(error_of("<sphere><radius>5e5</radius></sphere>"), HasSubstr("500000"));
 }

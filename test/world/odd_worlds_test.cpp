@@ -140,6 +140,13 @@ std::vector<Oddity> Oddities() {
          return StaticShape(n, std::string(kUnitBox) + "<sphere><radius>1</radius></sphere>");
        },
        "of several shapes"},
+      {"size of nothing", false,
+       [](Name n) {
+         return StaticModel(n, "<link name='l'><collision name='" + n +
+                                   "'><geometry><box><size>2 0 1</size></box></geometry>"
+                                   "</collision></link>");
+       },
+       "with a shape of size 0 left out, as nothing touches it"},
       {"second pose", false,
        [](Name n) {
          return StaticModel(

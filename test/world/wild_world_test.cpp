@@ -401,6 +401,26 @@ TEST_F(WildWorldTest, ASubmeshOfColladaIsNamedByItsNodeAndPlacedByIt) {
   }
 }
 
+TEST_F(WildWorldTest, ShapesOfSizeZeroAreLeftOutAndTheOthersStay) {
+  for (const std::string nothing :
+       {"<box><size>0 0 0</size></box>", "<box><size>2 0 1</size></box>",
+        "<cylinder><radius>0</radius><length>1</length></cylinder>",
+        "<cylinder><radius>1</radius><length>0.0</length></cylinder>",
+        "<sphere><radius>0</radius></sphere>",
+        "<capsule><radius>0</radius><length>1</length></capsule>",
+        "<ellipsoid><radii>1 0 1</radii></ellipsoid>"}) {
+    const World world =
+        Load(StaticModel("a", "<link name='l'><collision name='c'><geometry>" + nothing +
+                                  "</geometry></collision><collision name='d'><geometry>" +
+                                  kUnitBox + "</geometry></collision></link>"));
+    EXPECT_THAT(world.notes, ElementsAre(AllOf(HasSubstr("1 collision with a shape of size 0"),
+                                               HasSubstr("test.world:3 'c'"))))
+        << nothing;
+    ASSERT_EQ(world.statics.size(), 1u) << nothing;
+    EXPECT_EQ(world.statics[0].collisions.size(), 1u) << nothing;
+  }
+}
+
 // --- planes --------------------------------------------------------------------------------------
 
 std::string Plane(const std::string& name, double z, double friction) {

@@ -90,6 +90,43 @@ void SplitShapes(XMLElement* collision, const std::string& path, LoadNotes* note
   }
 }
 
+/// Planes have none, and a mesh of scale 0 is a mistake.
+bool IsOfSizeZero(const XMLElement& shape) {
+  static const std::set<std::string> sized{"box",  "cylinder",  "sphere",  "capsule",
+                                           "cone", "ellipsoid", "polyline"};
+  if (sized.count(shape.Name()) == 0) return false;
+  for (const char* name : {"size", "radius", "length", "radii", "height"}) {
+    const std::string text = TrimmedText(shape.FirstChildElement(name));
+    for (const char* at = text.c_str(); *at != '\0';) {
+      char* end = nullptr;
+      const double number = std::strtod(at, &end);
+      if (end == at) break;  // no number, of which others tell
+      if (number == 0.0) return true;
+      at = end + (*end == ',' ? 1 : 0);
+    }
+  }
+  return false;
+}
+
+/// @return whether that leaves none.
+bool DropShapesOfSizeZero(XMLElement* collision, const std::string& path, LoadNotes* notes) {
+  bool is_any = false, is_none_left = true;
+  for (XMLElement* geometry : ChildrenOf(collision, "geometry")) {
+    for (XMLElement* shape : ChildrenOf(geometry)) {
+      if (!IsOfSizeZero(*shape)) {
+        is_none_left = false;
+        continue;
+      }
+      is_any = true;
+      geometry->DeleteChild(shape);
+    }
+  }
+  if (is_any)
+    notes->Add("collision", "with a shape of size 0 left out, as nothing touches it",
+               PlaceIn(*collision, path));
+  return is_any && is_none_left;
+}
+
 void NumberNames(XMLElement* link) {
   std::set<std::string> names;
   for (XMLElement* collision : ChildrenOf(link, "collision")) {
@@ -107,6 +144,10 @@ void NumberNames(XMLElement* link) {
 void MendCollisions(XMLElement* link, const std::string& path, LoadNotes* notes) {
   for (XMLElement* collision : ChildrenOf(link, "collision")) {
     const std::string why = WhyGhost(collision);
+    if (DropShapesOfSizeZero(collision, path, notes)) {
+      link->DeleteChild(collision);
+      continue;
+    }
     if (why.empty()) {
       MendFriction(collision, path, notes);
       SplitShapes(collision, path, notes);
