@@ -1,6 +1,7 @@
 #include "world/sdf_file.h"
 
 #include <fmt/format.h>
+#include <tinyxml2.h>
 
 #include <algorithm>
 #include <mutex>
@@ -18,6 +19,7 @@
 #include "world/console_bridge_capture.h"
 #include "world/quick_sdf.h"
 #include "world/sdf/file_kind.h"
+#include "world/sdf/prune_sdf.h"
 #include "world/world_parts.h"
 
 namespace hires::world {
@@ -119,6 +121,21 @@ std::optional<sdf::Root> Load(const sdf::SDFPtr& document, const std::string& pa
   return root;
 }
 
+/// The text of a file of one static model alone as a world that has it, line by line; "" of others.
+std::string AsWorld(const SdfFile& file) {
+  tinyxml2::XMLDocument document;
+  document.Parse(file.text.data(), file.text.size());
+  const tinyxml2::XMLElement* root = document.RootElement();
+  const auto* model = root == nullptr ? nullptr : root->FirstChildElement("model");
+  if (file.num_worlds != 0 || file.num_models != 1 || model == nullptr) return "";
+  const std::string is_static = base::ToLower(TrimmedText(model->FirstChildElement("static")));
+  if (is_static != "1" && is_static != "true") return "";
+  std::string text = file.text;
+  text.insert(text.rfind("</sdf>"), "</world>");
+  text.insert(text.find("<model"), "<world name=\"one_model\">");
+  return text;
+}
+
 /// Reads parts of a world, and hands them on.
 class PartsReader {
  public:
@@ -200,9 +217,15 @@ SdfFiles ReadWorldFiles(const std::string& path, const ResourceFinder& finder, L
   if (!why.empty()) throw base::ConfigError(why);
   SdfFiles files = ReadSdfFiles(path, finder, {}, notes);
   if (notes->IsFull()) notes->ThrowIfProblems(path);
-  const SdfFile& file = files.at(path);
+  SdfFile& file = files.at(path);
   why = WhyNoWorldBy(file.root, path);
   if (!why.empty()) throw base::ConfigError(why);
+  if (std::string wrapped = AsWorld(file); !wrapped.empty()) {
+    file.text = std::move(wrapped);
+    file.num_worlds = 1;
+    file.elements.insert("world");
+    notes->Add("file", "of a static model without a world read as a world that has it", path);
+  }
   if (file.num_worlds != 1) {
     throw base::ConfigError(fmt::format(
         "{}: has {} <world> elements, wanted 1{}", path, file.num_worlds,

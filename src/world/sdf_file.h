@@ -31,7 +31,8 @@ struct SdfWorldPart {
   bool is_first;                           ///< has all that is no model
 };
 
-/// ReadSdfFiles for a world.
+/// ReadSdfFiles for a world; a file of one static model, such as a building, is read as a world
+/// that has it, with a note.
 /// @throws base::ConfigError as that; a file of another kind, told by its kind, with the option
 /// that takes it; if there is not one world.
 SdfFiles ReadWorldFiles(const std::string& path, const ResourceFinder& finder, LoadNotes* notes);

@@ -325,6 +325,27 @@ TEST_F(LoadWorldTest, RefusesFilesThatAreNoWorld) {
               HasSubstr("2 <world> elements, wanted 1"));
 }
 
+TEST_F(LoadWorldTest, AFileOfAStaticModelIsAWorldThatHasIt) {
+  const std::string building =
+      "<model name='hall'><static>true</static><pose>3 0 0.5 0 0 0</pose>\n" +
+      LinkWithShape(kUnitBox) + "</model>\n";
+  const World world = LoadWorld(folder_.Write("model.sdf", ModelFile(building)));
+  World same = LoadWorld(folder_.Write("a.world", WorldText(building)));
+  same.name = world.name;
+  EXPECT_EQ(world.hash, same.ComputeHash());
+  EXPECT_EQ(SourceOf("hall", world), folder_.path("model.sdf") + ":3");
+  EXPECT_THAT(world.notes, ElementsAre(HasSubstr("of a static model without a world")));
+  const auto error_of = [&](const std::string& models) {
+    const std::string path = folder_.Write("models.sdf", ModelFile(models));
+    return MessageOf<base::ConfigError>([&] { LoadWorld(path); });
+  };
+  EXPECT_THAT(error_of(building + building), HasSubstr("0 <world> elements, wanted 1"));
+  EXPECT_THAT(error_of(LooseCube("cube")), HasSubstr("a model goes with --object"));
+  std::string wrong = building;
+  wrong.replace(wrong.find("1 1 1"), 5, "1 1 x");
+  EXPECT_THAT(error_of(wrong), HasSubstr("models.sdf:3"));
+}
+
 TEST_F(LoadWorldTest, ReportsEveryObjectionWithFileAndLine) {
   const std::string error = ErrorOf(
       StaticModel("a", LinkWithShape("<heightmap/>")) +
