@@ -863,6 +863,15 @@ TEST_F(WildWorldTest, AFileOfAnotherKindIsToldByItsKind) {
   EXPECT_THAT(error_of("a.bag", "#ROSBAG V2.0\n"), HasSubstr("a bag"));
   EXPECT_THAT(error_of("model.sdf", ModelFile(LooseCube("a"))), HasSubstr("--object"));
   EXPECT_THAT(error_of("x.launch", "<launch/>"), HasSubstr("a launch file"));
+  const std::string box = StaticModel("b", LinkWithShape(kUnitBox));
+  EXPECT_THAT(error_of("e.sdf", WorldText("{% for i in range(3) %}" + box + "{% endfor %}")),
+              HasSubstr("a template (Jinja)"));
+  EXPECT_THAT(
+      error_of("e.world", WorldText("@{n = 0}\n@[for x in [-1, 1]]\n" + box + "@[end for]")),
+      HasSubstr("a template (EmPy)"));
+  EXPECT_THAT(error_of("f.world", "<sdf>@[if n < 2]<world name='a'>" + box),
+              HasSubstr("a template (EmPy)"));
+  EXPECT_EQ(Load("<!-- {% for %} and @[for: what this was made from -->" + box).statics.size(), 1u);
 }
 
 }  // namespace

@@ -61,17 +61,39 @@ std::string WhyNoWorldByBytes(const std::string& text, const std::string& path) 
   return "";
 }
 
+/// Comments may tell of the template that a file was made from.
+std::string WithoutComments(std::string text) {
+  for (std::size_t at = text.find("<!--"); at != std::string::npos; at = text.find("<!--", at)) {
+    const std::size_t end = text.find("-->", at);
+    text.erase(at, end == std::string::npos ? end : end + 3 - at);
+  }
+  return text;
+}
+
+/// Loops and conditions of Jinja or EmPy, which no SDF has in its elements.
+bool HasControl(const std::string& text) {
+  const std::string plain = WithoutComments(text);
+  for (const char* mark : {"{%", "@[for", "@[if", "@[while", "@[def"}) {
+    if (Holds(plain, mark)) return true;
+  }
+  return false;
+}
+
+std::string WhyTemplate(const std::string& text, const std::string& path) {
+  if (Holds(text, "{%") || Holds(text, "{{"))
+    return Is(path, "a template (Jinja)", "expand it with the tool that it came with");
+  if (Holds(text, "@[") || Holds(text, "@("))
+    return Is(path, "a template (EmPy)", "expand it with the tool that it came with");
+  return "";
+}
+
 std::string WhyNoWorldByWords(const std::string& text, const std::string& path) {
   if (Holds(text, "<%")) return Template(path, "ERB", "erb", ".erb");
   if (Holds(text, "xacro:") || Holds(text, "$(arg ")) {
     if (Holds(text, "<robot")) return Is(path, "a robot (xacro)", "give it with --robot");
     return Template(path, "xacro", "xacro", ".xacro");
   }
-  if (Holds(text, "{%") || Holds(text, "{{"))
-    return Is(path, "a template (Jinja)", "expand it with the tool that it came with");
-  if (Holds(text, "@[") || Holds(text, "@("))
-    return Is(path, "a template (EmPy)", "expand it with the tool that it came with");
-  return "";
+  return WhyTemplate(text, path);
 }
 
 std::string WhyNoWorldByKeys(const std::string& text, const std::string& path) {
@@ -100,7 +122,7 @@ std::string WhyNoWorldByEnding(const std::string& path) {
 std::string WhyNoWorld(const std::string& text, const std::string& path) {
   std::string why = WhyNoWorldByBytes(text, path);
   if (why.empty() && Holds(text, "<sdf") && !Holds(text, "<%") && !Holds(text, "xacro:"))
-    return why;
+    return HasControl(text) ? WhyTemplate(text, path) : "";
   if (why.empty()) why = WhyNoWorldByWords(text, path);
   const std::size_t first = text.find_first_not_of(" \t\r\n\xEF\xBB\xBF");
   const bool is_xml = first != std::string::npos && text[first] == '<';
