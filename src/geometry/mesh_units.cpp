@@ -11,6 +11,7 @@ namespace hires::geometry {
 namespace {
 
 constexpr double kMillimetre = 0.001, kCentimetre = 0.01;
+constexpr double kLargestOfUnit = 100.0;  // [m] of what is no land
 constexpr double kTiny = 0.1;  // [m] a thing that is less in millimetres may be in centimetres
 
 std::string SizeText(const Eigen::Vector3d& size) {
@@ -31,10 +32,17 @@ std::string ScaleText(const Eigen::Vector3d& scale, double factor, const std::st
 std::string DoubtedUnit(const std::string& path, const TriangleMesh& mesh,
                         const Eigen::Vector3d& scale, const DoubtfulSize& doubtful,
                         const std::string& write) {
-  if (base::ToLower(std::filesystem::path(path).extension().string()) == ".dae") return "";
+  const std::string ending = base::ToLower(std::filesystem::path(path).extension().string());
   Aabb bounds;
   for (const Eigen::Vector3d& p : mesh.vertices) bounds.Include(p);
   const Eigen::Vector3d size = bounds.upper - bounds.lower;
+  if (ending == ".dae") {
+    if (size.maxCoeff() <= kLargestOfUnit) return "";
+    return fmt::format(
+        "mesh {} is {} large by the <unit> in it (the metre where it has none); if that is not "
+        "meant, correct its <unit>, or write {}, as for mm",
+        path, SizeText(size), ScaleText(scale, kMillimetre, write));
+  }
   const double reach =
       bounds.lower.head<2>().cwiseAbs().cwiseMax(bounds.upper.head<2>().cwiseAbs()).maxCoeff();
   if (size.z() <= doubtful.height && reach <= doubtful.reach &&

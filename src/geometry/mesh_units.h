@@ -15,8 +15,8 @@ struct DoubtfulSize {
 };
 
 /// Whether a mesh is so large that its file may be in millimetres or centimetres: a sentence with
-/// file, size and the factor that would make sense; "" where it is not, or has a unit of its own
-/// (.dae). Nothing is scaled.
+/// file, size and the factor that would make sense; "" where it is not. One that says its unit
+/// (.dae) is believed up to 100 m. Nothing is scaled.
 /// @param mesh   as it was read with `scale`.
 /// @param write  how the file that names it gives a scale, "{}" for the numbers:
 /// "<scale>{}</scale>"

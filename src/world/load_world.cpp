@@ -387,7 +387,9 @@ ObjectModel LoadSdfObject(const std::string& path, const ResourceFinder& finder,
         Where(*model)));
   }
   MeshCache meshes;
-  return LooseObjectOf(*model, {finder, &meshes, notes});
+  ObjectModel object = LooseObjectOf(*model, {finder, &meshes, notes});
+  object.notes = meshes.Doubts();
+  return object;
 }
 
 ObjectModel LoadObjectOf(const std::string& path, LoadNotes* notes) {
@@ -428,7 +430,7 @@ ObjectModel LoadObjectModel(const std::string& path) {
   ObjectModel object = LoadObjectOf(path, &notes);
   const std::string moved = PutOriginAtUnderside(&object);
   if (!moved.empty()) notes.Add("object", moved, fmt::format("{} '{}'", path, object.name));
-  object.notes = notes.Sentences();
+  for (std::string& note : notes.Sentences()) object.notes.push_back(std::move(note));
   for (const std::string& note : object.notes)
     base::Log(base::LogLevel::kWarn, fmt::format("object={} note=\"{}\"", object.name, note));
   return object;

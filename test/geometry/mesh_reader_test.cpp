@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <fstream>
 
+#include "geometry/mesh_units.h"
 #include "hires/base/error.h"
 
 namespace hires::geometry::mesh_reader_test {
@@ -255,6 +256,43 @@ TEST_F(MeshReader, RefusesZeroAndInfiniteScale) {
       },
       ThrowsMessage<base::ConfigError>(HasSubstr("scale is (1, 0, 1)")));
   EXPECT_THROW(ReadMesh(path, {1.0, INFINITY, 1.0}), base::ConfigError);
+}
+
+std::string Wide(const std::string& text, bool is_big_endian) {
+  std::string wide;
+  for (const char letter : text) {
+    wide += is_big_endian ? '\0' : letter;
+    wide += is_big_endian ? letter : '\0';
+  }
+  return wide;
+}
+
+TEST_F(MeshReader, TellsTextInUtf16) {
+  for (const bool is_big_endian : {true, false}) {
+    const std::string mark = is_big_endian ? "\xFE\xFF" : "\xFF\xFE";
+    for (const char* name : {"a.obj", "a.dae", "a.stl"}) {
+      const std::string text = name == std::string("a.dae")   ? kTetrahedronDae
+                               : name == std::string("a.obj") ? kTetrahedronObj
+                                                              : kTetrahedronStl;
+      EXPECT_THAT([&] { ReadMesh(Write(name, mark + Wide(text, is_big_endian))); },
+                  ThrowsMessage<base::ConfigError>(HasSubstr("UTF-16, wanted UTF-8")))
+          << name;
+    }
+    EXPECT_THAT([&] { ReadMesh(Write("b.dae", Wide(kTetrahedronDae, is_big_endian))); },
+                ThrowsMessage<base::ConfigError>(HasSubstr("UTF-16, wanted UTF-8")));
+  }
+}
+
+TEST(DoubtedUnitTest, AFileThatSaysItsUnitIsDoubtedWhereItIsLargerThanABuilding) {
+  const auto doubt = [](double size) {
+    TriangleMesh mesh;
+    mesh.vertices = {{0.0, 0.0, 0.0}, {size, 0.0, 0.0}, {0.0, 1.0, 0.0}};
+    mesh.triangles = {{0, 1, 2}};
+    return DoubtedUnit("a.dae", mesh, {1.0, 1.0, 1.0}, {}, "<scale>{}</scale>");
+  };
+  EXPECT_EQ(doubt(99.0), "");
+  EXPECT_THAT(doubt(3000.0), AllOf(HasSubstr("3000 x 1 x 0 m"), HasSubstr("<unit>"),
+                                   HasSubstr("<scale>0.001 0.001 0.001</scale>")));
 }
 
 }  // namespace
