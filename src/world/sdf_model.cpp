@@ -296,7 +296,7 @@ std::shared_ptr<const geometry::TriangleMesh> MeshCache::Read(const std::string&
     } catch (const base::ConfigError& error) {
       throw base::ConfigError(fmt::format("{}: {}", where, error.what()));
     }
-    const std::string doubt = geometry::DoubtedUnit(path, *mesh, scale, {}, "<scale>{}</scale>");
+    const std::string doubt = geometry::DoubtedUnit(path, *mesh, scale, {}, scale_text_);
     if (!doubt.empty()) doubts_[mesh.get()] = doubt;
   }
   return mesh;

@@ -24,6 +24,9 @@ constexpr double kMaxWritten = 1e6;  ///< [m] from the origin; farther away it i
 /// Each mesh file, or part of it, is read once per scale and shared by all that name it.
 class MeshCache {
  public:
+  /// @param scale_text  how the file gives a scale, "{}" for the numbers.
+  explicit MeshCache(const char* scale_text = "<scale>{}</scale>") : scale_text_(scale_text) {}
+
   /// @param where  Opens the error message.  @throws base::ConfigError as geometry::ReadMesh.
   std::shared_ptr<const geometry::TriangleMesh> Read(const std::string& path,
                                                      const Eigen::Vector3d& scale,
@@ -38,6 +41,7 @@ class MeshCache {
  private:
   std::map<std::string, std::shared_ptr<const geometry::TriangleMesh>> meshes_;
   std::map<const geometry::TriangleMesh*, std::string> doubts_;
+  std::string scale_text_;
 };
 
 /// @throws base::ConfigError if `shape` has a size that is not finite and above 0, or `pose` is not

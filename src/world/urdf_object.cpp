@@ -42,7 +42,7 @@ geometry::Pose3 ToPose(const urdf::Pose& pose, const std::string& where) {
 }
 
 geometry::Shape ShapeOf(const urdf::Geometry& shape, const std::string& path,
-                        const ResourceFinder& finder, const std::string& where) {
+                        const ResourceFinder& finder, MeshCache* meshes, const std::string& where) {
   if (const auto* box = dynamic_cast<const urdf::Box*>(&shape)) {
     return geometry::Box{{box->dim.x, box->dim.y, box->dim.z}};
   }
@@ -57,8 +57,8 @@ geometry::Shape ShapeOf(const urdf::Geometry& shape, const std::string& path,
     throw base::ConfigError(where +
                             ": its shape is not supported; use box, cylinder, sphere, mesh");
   }
-  return MeshCache().Read(finder.FindMesh(mesh->filename, path, where),
-                          {mesh->scale.x, mesh->scale.y, mesh->scale.z}, where);
+  return meshes->Read(finder.FindMesh(mesh->filename, path, where),
+                      {mesh->scale.x, mesh->scale.y, mesh->scale.z}, where);
 }
 
 geometry::MassProperties MassPropertiesOf(const urdf::Link& link, const std::string& where) {
@@ -125,15 +125,15 @@ void RefuseMissingMeshes(const urdf::Link& link, const std::string& path,
 }
 
 std::vector<geometry::Collision> CollisionsOf(const urdf::Link& link, double friction,
-                                              const std::string& path,
-                                              const ResourceFinder& finder) {
+                                              const std::string& path, const ResourceFinder& finder,
+                                              MeshCache* meshes) {
   std::vector<geometry::Collision> collisions;
   RefuseMissingMeshes(link, path, finder);
   for (const urdf::CollisionSharedPtr& in : link.collision_array) {
     const std::string name = CollisionName(*in, collisions.size());
     const std::string where = WhereIs(link, name, path);
     if (in->geometry == nullptr) throw base::ConfigError(where + ": has no <geometry>; add one");
-    collisions.push_back({name, ShapeOf(*in->geometry, path, finder, where),
+    collisions.push_back({name, ShapeOf(*in->geometry, path, finder, meshes, where),
                           ToPose(in->origin, where), friction, 0.0});
     CheckCollision(collisions.back(), where);
   }
@@ -158,7 +158,10 @@ ObjectModel LoadUrdfObject(const std::string& path, const ResourceFinder& finder
   const urdf::Link& link = *model->links_.begin()->second;
   const std::string where = fmt::format("{}: link '{}'", path, link.name);
   ObjectModel object{model->getName(), MassPropertiesOf(link, where), {}};
-  object.collisions = CollisionsOf(link, FrictionIn(text, link.name, path, notes), path, finder);
+  MeshCache meshes("scale=\"{}\"");
+  const double friction = FrictionIn(text, link.name, path, notes);
+  object.collisions = CollisionsOf(link, friction, path, finder, &meshes);
+  object.notes = meshes.Doubts();
   if (object.collisions.empty()) {
     throw base::ConfigError(where +
                             ": has no <collision>, so it would fall through the floor; add one");

@@ -221,6 +221,19 @@ TEST_F(ObjectModelTest, UrdfMeshIsFound) {
   EXPECT_EQ(std::get<MeshPtr>(thing.collisions.at(0).shape)->triangles.size(), 12u);
 }
 
+TEST_F(ObjectModelTest, AMeshThatIsHardlyInMetresIsANoteOfItsObject) {
+  folder_.Write("cube.obj", kCubeObj);
+  const ObjectModel urdf = LoadObjectModel(folder_.Write(
+      "thing.urdf", CanUrdf("<collision><geometry><mesh filename='cube.obj' scale='60 60 240'/>"
+                            "</geometry></collision>")));
+  EXPECT_THAT(urdf.notes, testing::Contains(AllOf(HasSubstr("cube.obj is 60 x 60 x 240 m large"),
+                                                  HasSubstr("scale=\"0.06 0.06 0.24\""))));
+  const ObjectModel sdf =
+      LoadObjectModel(folder_.Write("thing.sdf", WithShape(MeshShape("cube.obj", "60 60 240"))));
+  EXPECT_THAT(sdf.notes, testing::Contains(AllOf(HasSubstr("cube.obj is 60 x 60 x 240 m large"),
+                                                 HasSubstr("<scale>0.06 0.06 0.24</scale>"))));
+}
+
 TEST_F(ObjectModelTest, RefusesUrdfThatIsNoObject) {
   const auto error_of = [&](const std::string& text) { return ErrorOf("a.urdf", text); };
   EXPECT_THAT(error_of("<robot name='a'><link name='b'>"), HasSubstr("a.urdf:1"));
