@@ -83,7 +83,7 @@ std::string QuestionOfUnits(const RobotLog& log) {
   return fmt::format(
       "; half of its ranges are longer than {:.0f}, wanted metres: are they in {}? Divide them by "
       "{}",
-      *middle, is_centimetres ? "centimetres" : "millimetres", is_centimetres ? 100 : 1000);
+      middle, is_centimetres ? "centimetres" : "millimetres", is_centimetres ? 100 : 1000);
 }
 
 }  // namespace
