@@ -519,8 +519,12 @@ void CarmenReader::Finish() {
   if (is_corrected_) MountCorrectedLaser();
   const bool has_odometry = !log_.odometry.empty();
   if (!has_odometry) TakeOdometryOfScans();
-  for (const std::string& what :
-       {TakeLaserMaximum(&log_), angles_doubt_, (has_odometry ? units_ : units_of_scans_).Doubt()})
+  const std::string maximum = TakeLaserMaximum(&log_);
+  if (!maximum.empty()) {
+    Warn(maximum +
+         "; a line PARAM robot_front_laser_max or the max_range of ROBOTLASER1 may say otherwise");
+  }
+  for (const std::string& what : {angles_doubt_, (has_odometry ? units_ : units_of_scans_).Doubt()})
     if (!what.empty()) Warn(what);
   SayWhatWasPassedOver();
 }

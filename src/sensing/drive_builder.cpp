@@ -12,6 +12,7 @@
 #include "hires/base/text.h"
 #include "hires/localisation/laser_mount.h"
 #include "hires/localisation/scan_outcome.h"
+#include "localisation/laser_maximum.h"
 
 namespace hires::sensing {
 namespace {
@@ -309,11 +310,14 @@ RobotLog DriveBuilder::Take() {
   RequireOdometry();
   LeaveOutBeyondOdometry();
   RequireScans();
+  const double said = log_.scans.front().reading.range_max;
+  const std::string maximum = localisation::TakeLaserMaximum(&log_);
   const auto warn = [&](const std::string& what) {
     base::Log(base::LogLevel::kWarn, recording_ + ": " + what);
   };
   if (num_late_ > 0) warn(fmt::format("{} readings came late; put in order", num_late_));
   for (const auto& [what, count] : left_out_) warn(fmt::format("left out {} {}", count, what));
+  if (!maximum.empty()) warn(fmt::format("{}; range_max of the scans says {:g}", maximum, said));
   return std::move(log_);
 }
 

@@ -165,13 +165,15 @@ std::string CarmenText(const RobotLog& log) {
   return text;
 }
 
-/// The robot goes ahead by 0.1 m in each of `count` steps of 0.1 s; walls are 3 m away.
+/// The robot goes ahead by 0.1 m in each of `count` steps of 0.1 s; a wall is 3 m away, aslant:
+/// beams that are all alike have met nothing.
 RobotLog ShortLog(int count = 10) {
   RobotLog log;
   for (int i = 0; i < count; ++i) {
     const double time = kBegin + 0.1 * i;
     log.odometry.push_back({time, {{0.1 * i, 0.0, 0.0}, {}}});
-    log.scans.push_back({time, {0.25, 0.0, 0.0}, {-1.0, 0.5, 0.02, {3, 3, 3, 3, 3}, 30.0}, {}});
+    log.scans.push_back(
+        {time, {0.25, 0.0, 0.0}, {-1.0, 0.5, 0.02, {3.0F, 3.1F, 3.2F, 3.3F, 3.4F}, 30.0}, {}});
   }
   return log;
 }
