@@ -20,6 +20,7 @@
 #include "hires/base/text.h"
 #include "hires/geometry/angles.h"
 #include "localisation/laser_maximum.h"
+#include "localisation/laser_places.h"
 #include "localisation/log_repair.h"
 #include "localisation/odometry_units.h"
 
@@ -38,7 +39,6 @@ constexpr double kLatest = 1.0;            // [s] by which a line may come too l
 constexpr double kCarmenMaxRange = 80.0;   // [m] what CARMEN assumes of FLASER
 constexpr double kCarmenMinRange = 0.01;   // [m] its accuracy there; 0 is no measurement
 constexpr double kSameSpan = 0.02;         // [rad] up to the digits that are written
-constexpr double kSameMounting = 0.05;     // [m], [rad] between two lines
 constexpr double kSamePose = 1e-3;         // [m], [rad] up to the digits that are written
 constexpr double kFarthestMounting = 3.0;  // [m] from the base
 constexpr int kWordsOfTime = 3;            // ipc_timestamp hostname logger_timestamp
@@ -143,7 +143,7 @@ class CarmenReader {
   std::string NamesPassedOver() const {
     return base::Join(std::vector<std::string>(passed_over_.begin(), passed_over_.end()), ", ");
   }
-  void MountCorrectedLaser();
+  void TakeLasersOrMount();
   void TakeOdometryOfScans();
 
   std::string path_, text_;
@@ -156,7 +156,7 @@ class CarmenReader {
   std::set<std::string> passed_over_;  // kinds of lines nobody here knows
   double range_max_{kCarmenMaxRange};  // of FLASER
   double laser_offset_{0.0};           // PARAM robot_frontlaser_offset
-  bool is_corrected_{false};           // the laser's place on the robot changes
+  LaserPlaces places_;                 // of the laser on the robot
   int num_repeated_lines_{0};          // that are equal to the one before
   OdometryUnits units_, units_of_scans_;
   std::string angles_doubt_;  // what was assumed of the first scan that tells them badly
@@ -393,10 +393,7 @@ void CarmenReader::AddScan(RobotLog::Scan scan, std::size_t first_of_odometry) {
   scan.time = InOrder(Time(), &last_scan_);
   TakeUnits(first_of_odometry, scan.time, &units_of_scans_);
   laser_kind_ = words_[0];
-  const Pose2& first = log_.scans.empty() ? scan.X_BL : log_.scans.front().X_BL;
-  const bool is_same = (scan.X_BL.position() - first.position()).norm() <= kSameMounting &&
-                       std::abs(geometry::WrapToPi(scan.X_BL.yaw - first.yaw)) <= kSameMounting;
-  if (!is_same || scan.X_BL.position().norm() > kFarthestMounting) is_corrected_ = true;
+  places_.Take(scan.X_BL);
   log_.scans.push_back(std::move(scan));
   lines_.scans.push_back(line_);
 }
@@ -516,7 +513,7 @@ void CarmenReader::Finish() {
   std::stable_sort(log_.scans.begin(), log_.scans.end(), earlier);
   const std::string contradicting = LeaveOutContradicting(&log_);
   if (!contradicting.empty()) Warn(contradicting);
-  if (is_corrected_) MountCorrectedLaser();
+  if (places_.do_vary()) TakeLasersOrMount();
   const bool has_odometry = !log_.odometry.empty();
   if (!has_odometry) TakeOdometryOfScans();
   const std::string maximum = TakeLaserMaximum(&log_);
@@ -544,7 +541,14 @@ void CarmenReader::RefuseWhatIsTooOdd() const {
                   passed_over_.empty() ? "" : fmt::format(", but {}", NamesPassedOver())));
 }
 
-void CarmenReader::MountCorrectedLaser() {
+void CarmenReader::TakeLasersOrMount() {
+  const std::string lasers = places_.TextOfLasers();
+  if (!lasers.empty()) {
+    return Warn(
+        fmt::format("lines {} are of several lasers, by their places (x y yaw) on the "
+                    "robot, and all are taken: {}",
+                    laser_kind_, lasers));
+  }
   Warn(
       fmt::format("the laser's place on the robot is not the same in all lines, as where a mapper "
                   "has corrected the log; taken is {} m before the base (PARAM "

@@ -40,8 +40,9 @@ namespace hires::localisation {
 /// looks as far to the left as to the right, with a warning, and fov where the resolution is 0.
 ///
 /// Where the laser sits on the robot follows from the two poses of its line. If that changes
-/// between lines, a mapper has corrected the log: then PARAM robot_frontlaser_offset says it (0
-/// where it is missing, CARMEN's default), with a warning.
+/// between few places that stay the same, several lasers have written lines of one name, and all
+/// are taken; else a mapper has corrected the log: then PARAM robot_frontlaser_offset says it (0
+/// where it is missing, CARMEN's default). There is a warning of either.
 ///
 /// Where times do not advance over the drive (all equal, or rounded to steps far longer than a
 /// scan), readings are taken in the order of their lines at times that are made up, with a warning.
