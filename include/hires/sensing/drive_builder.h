@@ -99,6 +99,7 @@ class DriveBuilder {
   void RequireOdometry() const;
   void LeaveOutBeyondOdometry();
   void RequireScans() const;
+  std::string FramesText() const;
   std::string LeftOutText() const;
 
   std::string recording_;
