@@ -32,8 +32,10 @@ constexpr double kMostThrough = 0.008;  // of the beams
 constexpr double kLeastExplained = 0.6;
 constexpr int kFewLost = 20;
 constexpr double kLeastAlike = 0.8, kMostAlike = 1.25;  // motion by the laser for that by odometry
+constexpr double kLeastTurned = 0.5,
+                 kMostTurned = 2.0;  // turns of bases that skid; the map is right
 constexpr int kFewDisagreed = 20;
-constexpr double kMostDisagreed = 0.6;   // of the stretches
+constexpr double kMostDisagreed = 0.75;  // of the stretches
 constexpr double kSameUnit = 0.1;        // by which a ratio may miss that of two units
 constexpr double kMostJumps = 0.2;       // of the scans
 constexpr double kMostLost = 1.0 / 3.0;  // of the scans
@@ -114,7 +116,14 @@ void JudgeBeams(const MapSketch& sketch, const OccupancyGrid& grid, MapEvidence*
 bool AreUntied(const MapReturns& returns) {
   return returns.num_apart >= kFewReturns && returns.num_apart > kMostApart * returns.num_judged;
 }
-bool IsUnlike(double ratio) { return ratio < kLeastAlike || ratio > kMostAlike; }
+bool AreWaysUnlike(const MapCounts& counts) {
+  return counts.ways_alike < kLeastAlike || counts.ways_alike > kMostAlike;
+}
+bool AreTurnsUnlike(const MapCounts& counts, const MapEvidence& evidence) {
+  const double alike = counts.turns_alike;
+  return evidence.is_field_assumed ? alike < kLeastAlike || alike > kMostAlike
+                                   : alike < kLeastTurned || alike > kMostTurned;
+}
 bool DoDisagree(const MapCounts& counts) {
   return counts.num_disagreed >= kFewDisagreed &&
          counts.num_disagreed > kMostDisagreed * counts.num_stretches;
@@ -142,6 +151,14 @@ std::string QuestionOfWays(double ways_alike) {
          "ticks of the wheels)";
 }
 
+/// Lasers of half a circle have steps of 1, 0.5 or 0.25 degrees, or few of several degrees.
+bool IsFieldAssumed(double field_of_view, std::size_t num_steps) {
+  constexpr double kHalfCircle = 0.03;  // [rad] that may be one step less
+  const std::size_t num_even = num_steps + 1 - (num_steps + 1) % 2;
+  return num_even > 2 && std::abs(field_of_view - geometry::kPi) < kHalfCircle &&
+         720 % num_even != 0;
+}
+
 /// Where the beams' angles are the reason; empty: they cannot be.
 std::string QuestionOfAngles(double turns_alike, double field_of_view) {
   if (turns_alike <= 0.0) return "";
@@ -162,6 +179,7 @@ MapEvidence EvidenceOf(const MapSketch& sketch, const OccupancyGrid& grid) {
     const robot::ScanReading& first = sketch.scans.front()->reading;
     const std::size_t num_steps = first.ranges.empty() ? 0 : first.ranges.size() - 1;
     evidence.field_of_view = std::abs(first.angle_increment) * static_cast<double>(num_steps);
+    evidence.is_field_assumed = IsFieldAssumed(evidence.field_of_view, num_steps);
   }
   evidence.returns = sketch.judge_returns();
   const double finer = grid.resolution / kJudgedCell;
@@ -189,12 +207,12 @@ std::string WhyDoubtful(const MapCounts& counts, const MapEvidence& evidence) {
   if (evidence.explained < kLeastExplained)
     against.push_back(
         fmt::format("{:.0f} % of the beams ended at its walls", 100.0 * evidence.explained));
-  if (IsUnlike(counts.turns_alike))
+  if (AreTurnsUnlike(counts, evidence))
     against.push_back(counts.turns_alike < 0.0
                           ? "laser and odometry turn in opposite directions"
                           : fmt::format("the laser sees {:.0f} % of the turns that odometry tells",
                                         100.0 * counts.turns_alike));
-  if (IsUnlike(counts.ways_alike))
+  if (AreWaysUnlike(counts))
     against.push_back(
         fmt::format("the laser moves {:.3g} times as far as odometry tells", counts.ways_alike));
   if (DoDisagree(counts))
@@ -221,13 +239,13 @@ std::string WhatToDo(const MapCounts& counts, const MapEvidence& evidence) {
         "odometry jumped {} times at {} scans: is it in metres and radians, not in millimetres or "
         "degrees?",
         counts.odometry_jumps, counts.num_scans));
-  if (IsUnlike(counts.ways_alike)) remedies.push_back(QuestionOfWays(counts.ways_alike));
-  const std::string angles = IsUnlike(counts.turns_alike)
+  if (AreWaysUnlike(counts)) remedies.push_back(QuestionOfWays(counts.ways_alike));
+  const std::string angles = AreTurnsUnlike(counts, evidence)
                                  ? QuestionOfAngles(counts.turns_alike, evidence.field_of_view)
                                  : "";
   if (!angles.empty()) remedies.push_back(angles);
   if (evidence.explained < kLeastExplained || evidence.through_walls > kMostThrough ||
-      IsUnlike(counts.turns_alike) || DoDisagree(counts))
+      AreTurnsUnlike(counts, evidence) || DoDisagree(counts))
     remedies.push_back(
         "check the order, angles and unit of the ranges, the laser's place on the robot, and the "
         "odometry");

@@ -58,8 +58,11 @@ struct MapEvidence {
   int num_beams{0};           ///< that were judged
   double explained{1.0};      ///< share that ended within 0.1 m of an occupied cell
   double through_walls{0.0};  ///< share that went on 0.5 m and more behind a wall, and not along it
-  double field_of_view{
-      0.0};  ///< [rad] between first and last beam of the first scan that was drawn
+  /// [rad] Between first and last beam of the first scan that was drawn.
+  double field_of_view{0.0};
+  /// That this is half a circle, in steps that no such laser has: FLASER, which always means half a
+  /// circle, is written of others, too.
+  bool is_field_assumed{false};
 };
 
 struct MapResult : MapCounts {
