@@ -256,6 +256,16 @@ TEST_F(AchieveVerbTest, ADryRunWhoseStepMakesNoSenseHasFailed) {
   EXPECT_EQ(deliver("atLongTable", "off").code, kExitAchieved);
 }
 
+TEST_F(AchieveVerbTest, AnEmptyWordIsNotTakenForNone) {
+  for (const auto& words : std::vector<std::vector<std::string>>{
+           {"--local", ""}, {"--local", "deliver", "", "atRoundTable"}, {"--local", " "}, {""}}) {
+    const Ended ended = Run(words);
+    EXPECT_EQ(ended.code, kExitNotAchieved);
+    EXPECT_EQ(ended.out, "");
+    EXPECT_THAT(ended.err, AllOf(HasSubstr("task"), HasSubstr("an empty text came")));
+  }
+}
+
 double VirtualSecondsIn(const std::string& text) {
   std::smatch found;
   if (!std::regex_search(text, found, std::regex("([0-9.]+) s of virtual time"))) return -1.0;
