@@ -55,6 +55,27 @@ TEST(LanguageOfTest, OtherFilesAreNamed) {
   EXPECT_THAT(ErrorOf([] { LanguageOf("(setq x 1)", "notes.txt"); }), HasSubstr("(setq"));
 }
 
+TEST(LanguageOfTest, FormsOfLispMayStandBefore) {
+  using Language = Domain::Language;
+  for (const std::string before : {"(progn (ql:quickload :shop3))", "(defpackage :x)", "#+x (f)",
+                                   "(cl:in-package #:shop-user)", "(eval-when () 1)"}) {
+    EXPECT_EQ(LanguageOf(before + " (defdomain d ())", "f"), Language::kShop2) << before;
+    EXPECT_EQ(LanguageOf(before + " (shop:defproblem p () ())", "f"), Language::kShop2) << before;
+  }
+  EXPECT_EQ(LanguageOf("(shop2:defdomain d ())", "f"), Language::kShop2);
+}
+
+TEST(LoadTest, WhatIsToldOfAFileIsToldOnce) {
+  const hires::test_support::TemporaryFolder folder;
+  const std::string path = folder.Write(
+      "d.lisp", std::string(kShop2Domain) + "(defproblem p d () ((!go a)))(find-plans 'p)");
+  const Domain domain = LoadDomain(path);
+  EXPECT_THAT(domain.warnings, ElementsAre(HasSubstr("(find-plans ...)")));
+  EXPECT_THAT(LoadProblems(path, domain).at(0).warnings, IsEmpty());
+  const std::string other = folder.Write("p.lisp", "(defproblem p d () ((!go a)))(find-plans 'p)");
+  EXPECT_THAT(LoadProblems(other, domain).at(0).warnings, ElementsAre(HasSubstr("p.lisp:1:30")));
+}
+
 TEST(LoadTest, BothLanguagesAreLoaded) {
   const hires::test_support::TemporaryFolder folder;
   const Domain shop2 = LoadDomain(folder.Write("d.lisp", kShop2Domain));

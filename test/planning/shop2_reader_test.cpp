@@ -11,6 +11,7 @@ namespace hires::planning::shop2_reader_test {
 namespace {
 
 using ::testing::AllOf;
+using ::testing::Contains;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
@@ -389,6 +390,87 @@ TEST(Shop2ProblemTest, AFileMayHoldDomainAndProblems) {
   EXPECT_EQ(problems[1].name, "p2");
   EXPECT_THAT(problems[1].tasks.order, IsEmpty());
   for (const Problem& problem : problems) EXPECT_NO_THROW(CheckTasks(problem, domain));
+}
+
+// ------------------------------------------------------------------------------ other forms
+
+constexpr const char* kWholeDomain = "(defdomain d ((:method (t1 ?x) () ())))\n";
+constexpr const char* kWholeProblem = "(defproblem p d ((f 1)) ((t1 a)))\n";
+
+void ExpectWhole(const std::string& text) {
+  EXPECT_THAT(ReadShop2Domain(text, "f.lisp").methods, SizeIs(1)) << text;
+  const std::vector<Problem> problems = ReadShop2Problems(text, "f.lisp");
+  ASSERT_THAT(problems, SizeIs(1)) << text;
+  EXPECT_THAT(problems[0].facts, SizeIs(1)) << text;
+  EXPECT_TRUE(IsShop2File(text, "f.lisp")) << text;
+}
+
+TEST(OtherFormsTest, FormsOfLispAroundDomainAndProblemArePassedOverWithOneWarning) {
+  for (const std::string form :
+       {"(find-plans 'p :which :first :verbose :plans)", "(progn (ql:quickload :shop3))",
+        "(declaim (optimize (speed 3)))", "(defun cost (a &optional b) `(list ,a ,@b))",
+        "(defun f (c) (member c '(#\\( #\\Space #\\; #\\\")))", "(defvar *v* #(1 2 #x1F))",
+        "(setf *p* #p\"a/b\" *q* #.(list 1))", "(eval-when (:load-toplevel) (load \"x\"))",
+        "(defmacro m (&body body) #+sbcl nil #-sbcl `(progn ,@body))"}) {
+    for (const std::string& text :
+         {form + "\n" + kWholeDomain + kWholeProblem, kWholeDomain + form + "\n" + kWholeProblem,
+          std::string(kWholeDomain) + kWholeProblem + form}) {
+      ExpectWhole(text);
+      EXPECT_THAT(ReadShop2Domain(text, "f.lisp").warnings,
+                  Contains(AllOf(HasSubstr("f.lisp:"), HasSubstr("passed over"))))
+          << text;
+    }
+  }
+}
+
+TEST(OtherFormsTest, TheWarningTellsNamesAndLines) {
+  const std::string text =
+      std::string("(ql:quickload :shop)\n") + kWholeDomain + "(find-plans 'p)\n(find-plans 'q)";
+  EXPECT_THAT(
+      ReadShop2Domain(text, "f.lisp").warnings,
+      ElementsAre(AllOf(HasSubstr("f.lisp:1:1: "), HasSubstr("(ql:quickload ...) in line 1"),
+                        HasSubstr("(find-plans ...) in lines 3, 4"))));
+  std::string many;
+  for (int i = 0; i < 100; ++i) many += "(f" + std::to_string(i) + ") ";
+  const Domain domain = ReadShop2Domain(many + kWholeDomain, "f.lisp");
+  ASSERT_THAT(domain.warnings, SizeIs(1));
+  EXPECT_LT(domain.warnings[0].size(), 500u);
+  EXPECT_THAT(domain.warnings[0], HasSubstr("92 more"));
+}
+
+TEST(OtherFormsTest, DefinitionsMayStandInAFormAndHavePackages) {
+  const std::string both = std::string(kWholeDomain) + kWholeProblem;
+  for (const std::string& text :
+       {"(progn\n" + both + ")", "(let ((x 1)) " + both + ")", "(let* () (progn " + both + "))",
+        "(eval-when (:compile-toplevel :load-toplevel :execute) " + both + ")",
+        "(locally (declare (ignore x)) " + both + ")",
+        std::string("(cl:in-package #:shop-user) (shop2:") + (kWholeDomain + 1) +
+            "(shop2::" + (kWholeProblem + 1)}) {
+    ExpectWhole(text);
+  }
+  EXPECT_THAT(ReadShop2Domain("(cl:in-package :x)" + both, "f.lisp").warnings, IsEmpty());
+}
+
+TEST(OtherFormsTest, MarksOfTheReaderAreHeeded) {
+  const std::string both = std::string(kWholeDomain) + kWholeProblem;
+  for (const std::string mark :
+       {"#+ignore", "#+(or)", "#+(or sbcl ccl)", "#-(not x)", "#+(and shop)", "#+#.x"}) {
+    for (const std::string form :
+         {"(defproblem q d () ())", "((:method (x) () ()))", "'a", "(#\\( ,@x)"}) {
+      const std::string text = mark + " " + form + "\n" + both;
+      ExpectWhole(text);
+      EXPECT_THAT(ReadShop2Domain(text, "f.lisp").warnings,
+                  ElementsAre(AllOf(HasSubstr("f.lisp:1:1: left out"), HasSubstr("line 1"))));
+    }
+  }
+  for (const std::string mark : {"#-x", "#-(or)", "#+(not x)", "#+(and)"}) {
+    const std::string text = mark + " " + both;
+    ExpectWhole(text);
+    EXPECT_THAT(ReadShop2Domain(text, "f.lisp").warnings, ElementsAre(HasSubstr("read, as no")));
+  }
+  const Problem problem = ProblemOf("d ((f #:One) #+x (g 2) #+x #+y (h 3) (i 4) (f 5)) ()");
+  EXPECT_THAT(problem.facts, SizeIs(2)) << "#+x #+y leaves out both";
+  EXPECT_EQ(ToString(problem.facts[0]), "(f one)");
 }
 
 // ------------------------------------------------------------------------------------ original

@@ -8,9 +8,9 @@
 
 namespace hires::planning {
 
-/// The language of a planning file by its first word: SHOP2's (defdomain ...), (defproblem ...),
-/// (make-problem ...), (in-package ...); HDDL's (define ...).
-/// @throws base::ConfigError if it begins with anything else.
+/// The language of a planning file by its first word, HDDL's (define ...), or by any form of
+/// SHOP2's in it: (defdomain ...), (defproblem ...), (make-problem ...), (in-package ...).
+/// @throws base::ConfigError if there is none of them.
 Domain::Language LanguageOf(std::string_view text, const std::string& source);
 
 /// The domain in a file of either language. Whether the order of its subtasks is kept is taken from

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <filesystem>
 
 #include "hires/base/error.h"
@@ -35,6 +36,16 @@ void WarnOfOtherDomain(const Domain& domain, Problem* problem) {
                           problem->name, problem->domain, domain.name, domain.source)));
 }
 
+/// A file that holds the domain, too, was warned of with it.
+void DropKnownWarnings(const Domain& domain, Problem* problem) {
+  std::vector<std::string>& warnings = problem->warnings;
+  const auto is_known = [&](const std::string& warning) {
+    return std::find(domain.warnings.begin(), domain.warnings.end(), warning) !=
+           domain.warnings.end();
+  };
+  warnings.erase(std::remove_if(warnings.begin(), warnings.end(), is_known), warnings.end());
+}
+
 std::vector<Problem> ReadProblems(const std::string& path, const Domain& domain) {
   const std::string text = base::ReadTextFile(path);
   const Domain::Language language = LanguageOf(text, path);
@@ -55,8 +66,12 @@ Domain::Language LanguageOf(std::string_view text, const std::string& source) {
   const std::string word = FirstWord(text, source);
   if (word == "define") return Domain::Language::kHddl;
   for (const char* known : {"defdomain", "defproblem", "make-problem", "in-package"}) {
-    if (word == known) return Domain::Language::kShop2;
+    if (WithoutPackage(word) == known) return Domain::Language::kShop2;
   }
+  // Other forms of Lisp may stand before, and so may a mark of its reader.
+  const bool may_be_lisp =
+      !word.empty() || text.find("#+") != text.npos || text.find("#-") != text.npos;
+  if (may_be_lisp && IsShop2File(text, source)) return Domain::Language::kShop2;
   throw base::ConfigError(fmt::format(
       "{}: is no planning file: it begins with {}, wanted (defdomain or (defproblem for SHOP2, "
       "(define for HDDL; name another file",
@@ -82,7 +97,10 @@ void CheckSidecar(const std::string& domain_path, const Domain& domain) {
 
 std::vector<Problem> LoadProblems(const std::string& path, const Domain& domain) {
   std::vector<Problem> problems = ReadProblems(path, domain);
-  for (Problem& problem : problems) WarnOfOtherDomain(domain, &problem);
+  for (Problem& problem : problems) {
+    DropKnownWarnings(domain, &problem);
+    WarnOfOtherDomain(domain, &problem);
+  }
   return problems;
 }
 

@@ -3,9 +3,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <iterator>
 #include <utility>
 
+#include "hires/base/spelling.h"
+#include "hires/base/text.h"
 #include "hires/planning/datum_reader.h"
 #include "planning/language/shop2_parts.h"
 
@@ -14,6 +17,7 @@ namespace {
 
 using shop2::Construct;
 
+constexpr std::array<std::string_view, 3> kDefinitions{"defdomain", "defproblem", "make-problem"};
 constexpr std::string_view kDomainWanted = "(defdomain name (items...))";
 constexpr std::string_view kProblemWanted = "(defproblem name [domain] (facts...) (tasks...))";
 
@@ -21,19 +25,117 @@ bool IsDomain(const Datum& form) { return form.Head() == "defdomain"; }
 bool IsProblem(const Datum& form) {
   return form.Head() == "defproblem" || form.Head() == "make-problem";
 }
+bool IsDefinition(std::string_view head) {
+  return std::find(kDefinitions.begin(), kDefinitions.end(), head) != kDefinitions.end();
+}
 
-/// The forms of a file, with anything that is neither domain nor problem refused.
-std::vector<Datum> ReadForms(std::string_view text, const std::string& source) {
-  std::vector<Datum> forms = ReadData(text, source);
-  for (const Datum& form : forms) {
-    if (IsDomain(form) || IsProblem(form) || form.Head() == "in-package") continue;
-    FailAt(source, form.place,
-           fmt::format("came {}, wanted {} or {}; a planning file holds nothing else and runs no "
-                       "code, so take this away",
+/// What stands before the body of a form of Lisp that may hold definitions; 0: it is none.
+std::size_t BodyOf(std::string_view head) {
+  if (head == "progn" || head == "locally") return 1;
+  return head == "let" || head == "let*" || head == "eval-when" ? 2 : 0;
+}
+
+/// The definitions of a file, and what of its rest is told.
+class FormCollector {
+ public:
+  FormCollector(std::string_view text, const std::string& source) : source_(source) {
+    file_.definitions.assign(kDefinitions.begin(), kDefinitions.end());
+    for (Datum& form : ReadLispFile(text, source, &file_)) {
+      Require(form);
+      Collect(std::move(form));
+    }
+  }
+
+  std::vector<Datum>& definitions() { return definitions_; }
+
+  /// One for each kind of thing that is left out.
+  std::vector<std::string> Warnings() const {
+    std::vector<std::string> warnings;
+    if (!passed_over_.empty()) {
+      std::vector<std::string> forms;
+      for (const auto& [name, places] : passed_over_) {
+        forms.push_back(fmt::format("({} ...) in {}", Excerpt(MakeSymbol(name)), LinesOf(places)));
+      }
+      warnings.push_back(Located(source_, first_passed_over_,
+                                 "no code is run, so that these forms are passed over, and what "
+                                 "they would define is missing: " +
+                                     Shortened(std::move(forms), ", ")));
+    }
+    AddMarks(file_.skipped, "left out, as no feature is there: the form after #+ or #- in ",
+             &warnings);
+    AddMarks(file_.kept, "read, as no feature is there: the form after #+ or #- in ", &warnings);
+    return warnings;
+  }
+
+ private:
+  static constexpr std::size_t kMostTold = 8;
+
+  static std::string Shortened(std::vector<std::string> parts, const std::string& between) {
+    const std::size_t count = parts.size();
+    if (count > kMostTold) {
+      parts.resize(kMostTold);
+      parts.push_back(fmt::format("{} more", count - kMostTold));
+    }
+    return base::Join(parts, between);
+  }
+
+  static std::string LinesOf(const std::vector<Place>& places) {
+    std::vector<std::string> lines;
+    for (const Place& place : places) lines.push_back(std::to_string(place.line));
+    const std::string noun = lines.size() == 1 ? "line " : "lines ";
+    return noun + Shortened(std::move(lines), ", ");
+  }
+
+  void AddMarks(const std::vector<Place>& places, const std::string& what,
+                std::vector<std::string>* warnings) const {
+    if (places.empty()) return;
+    warnings->push_back(Located(source_, places.front(), what + LinesOf(places)));
+  }
+
+  /// Refuses what is no form of Lisp, and what is likely to be a definition, or a part of one, that
+  /// went wrong: it must not be lost.
+  void Require(const Datum& form) const {
+    const std::string head(WithoutPackage(form.Head()));
+    const bool is_slip =
+        !IsDefinition(head) &&
+        std::any_of(kDefinitions.begin(), kDefinitions.end(), [&](std::string_view known) {
+          return base::AreSpeltAlike(head, std::string(known));
+        });
+    if (!head.empty() && head.front() != ':' && head != "define" && !is_slip) return;
+    FailAt(source_, form.place,
+           fmt::format("came {}, wanted {} or {}; correct it, look for a ')' too many above, or "
+                       "take it away",
                        Excerpt(form), kDomainWanted, kProblemWanted));
   }
-  return forms;
-}
+
+  void Collect(Datum form) {
+    const std::string head(WithoutPackage(form.Head()));
+    if (IsDefinition(head)) {
+      form.items[0].text = head;
+      definitions_.push_back(std::move(form));
+      return;
+    }
+    if (const std::size_t body = BodyOf(head); body > 0) {
+      for (std::size_t i = body; i < form.items.size(); ++i) Collect(std::move(form.items[i]));
+      return;
+    }
+    if (head.empty() || head == "in-package") return;
+    if (passed_over_.empty()) first_passed_over_ = form.place;
+    const std::string name(form.Head());
+    const auto same = std::find_if(passed_over_.begin(), passed_over_.end(),
+                                   [&](const auto& other) { return other.first == name; });
+    auto& places = same == passed_over_.end()
+                       ? passed_over_.emplace_back(name, std::vector<Place>()).second
+                       : same->second;
+    places.push_back(form.place);
+  }
+
+  const std::string& source_;
+  LispFile file_;
+  std::vector<Datum> definitions_;
+  Place first_passed_over_;
+  std::vector<std::pair<std::string, std::vector<Place>>> passed_over_;  // by name, in order
+};
 
 /// `name` or `(name options...)`.
 const Datum& NameIn(const Construct& in, const Datum& datum) {
@@ -132,10 +234,28 @@ Problem ReadProblem(const Datum& form, const std::string& source) {
   return problem;
 }
 
+/// A definition at any place where FormCollector finds one.
+bool HoldsDefinition(const Datum& form) {
+  const std::string_view head = WithoutPackage(form.Head());
+  if (IsDefinition(head) || head == "in-package") return true;
+  const std::size_t body = BodyOf(head);
+  if (body == 0 || body > form.items.size()) return false;
+  return std::any_of(form.items.begin() + static_cast<std::ptrdiff_t>(body), form.items.end(),
+                     HoldsDefinition);
+}
+
 }  // namespace
 
+bool IsShop2File(std::string_view text, const std::string& source) {
+  LispFile file;
+  file.definitions.assign(kDefinitions.begin(), kDefinitions.end());
+  const std::vector<Datum> forms = ReadLispFile(text, source, &file);
+  return std::any_of(forms.begin(), forms.end(), HoldsDefinition);
+}
+
 Domain ReadShop2Domain(std::string_view text, const std::string& source) {
-  const std::vector<Datum> forms = ReadForms(text, source);
+  FormCollector file(text, source);
+  const std::vector<Datum>& forms = file.definitions();
   const auto domain = std::find_if(forms.begin(), forms.end(), IsDomain);
   if (domain == forms.end()) {
     FailAt(source, {1, 1},
@@ -147,14 +267,18 @@ Domain ReadShop2Domain(std::string_view text, const std::string& source) {
            fmt::format("a second domain, the first stands in line {}; keep one in a file",
                        domain->place.line));
   }
-  return ReadDomain(*domain, source);
+  Domain read = ReadDomain(*domain, source);
+  for (const std::string& warning : file.Warnings()) read.warnings.push_back(warning);
+  return read;
 }
 
 std::vector<Problem> ReadShop2Problems(std::string_view text, const std::string& source) {
   std::vector<Problem> problems;
-  for (const Datum& form : ReadForms(text, source)) {
+  FormCollector file(text, source);
+  for (const Datum& form : file.definitions()) {
     if (IsProblem(form)) problems.push_back(ReadProblem(form, source));
   }
+  for (Problem& problem : problems) problem.warnings = file.Warnings();
   if (problems.empty()) {
     FailAt(source, {1, 1},
            fmt::format("holds no problem, wanted {}; name another file", kProblemWanted));
