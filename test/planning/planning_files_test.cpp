@@ -8,6 +8,7 @@
 
 #include "hires/base/error.h"
 #include "hires/planning/planner.h"
+#include "hires/planning/task_text.h"
 #include "support/temporary_folder.h"
 
 namespace hires::planning::planning_files_test {
@@ -172,6 +173,24 @@ TEST(LoadTest, TasksOfProblemsAreCheckedAgainstTheDomain) {
   const std::string problem = folder.Write("p.lisp", "(defproblem p d ()\n ((!fly a)))");
   EXPECT_THAT(ErrorOf([&] { LoadProblems(problem, domain); }),
               AllOf(HasSubstr("p.lisp:2:3"), HasSubstr("did you mean '!go'")));
+}
+
+TEST(LoadTest, TheProblemsBesideOneThatIsWrongCanBePlannedFor) {
+  const hires::test_support::TemporaryFolder folder;
+  const Domain domain = LoadDomain(folder.Write("d.lisp", kShop2Domain));
+  const std::string path =
+      folder.Write("p.lisp",
+                   "(defproblem p1 d () ((!go a b)))\n(defproblem p2 d () ((!go a)))\n"
+                   "(defproblem p3 d () ((!fly a)))\n(defproblem p4 d ((at ?x)) ((!go a)))");
+  const std::vector<Problem> problems = LoadProblems(path, domain);
+  ASSERT_THAT(problems, SizeIs(4));
+  const Problem& good = FindProblem(problems, "P2");
+  EXPECT_EQ(FindPlans(domain, good).outcome, PlanOutcome::kFound);
+  EXPECT_THAT(good.warnings, ElementsAre(AllOf(HasSubstr("p.lisp:1:22"), HasSubstr("'p1'"),
+                                               HasSubstr("(3 such problems)"))));
+  EXPECT_THAT(ErrorOf([&] { FindProblem(problems, "p1"); }), HasSubstr("p.lisp:1:22"));
+  EXPECT_THAT(ErrorOf([&] { FindProblem(problems, "p3"); }), HasSubstr("did you mean '!go'"));
+  EXPECT_THAT(ErrorOf([&] { FindProblem(problems, "p4"); }), HasSubstr("p.lisp:4:19"));
 }
 
 TEST(LoadTest, AMissingFileIsNamed) {

@@ -6,6 +6,7 @@
 #include <filesystem>
 
 #include "hires/base/text.h"
+#include "support/messages.h"
 
 namespace hires::planning::shop2_reader_test {
 namespace {
@@ -234,6 +235,17 @@ TEST(OperatorReaderTest, ADeleteWhoseVariableNothingBindsIsWarnedOf) {
   EXPECT_THAT(DomainOf("(:op (!o) :delete ((p ?x ?y)))").warnings, SizeIs(2));
 }
 
+TEST(OperatorReaderTest, ALogicalWordAmongDeletesDeletesNothingAndIsWarnedOf) {
+  for (const std::string word : {"(or (p ?x) (q))", "(not (p ?x))", "(and)", "(imply (p) (q))"}) {
+    const std::string deletes = "((q ?lamp) " + word + " (forall (?v) ((p ?v)) ((p ?v))))";
+    EXPECT_THAT(WarningsOf("() " + deletes + " ()"),
+                ElementsAre(AllOf(HasSubstr("test.lisp:2:15: operator '!unplug'"), HasSubstr(word),
+                                  HasSubstr("deletes nothing"))));
+    EXPECT_EQ(OperatorOf("((q ?x) " + word + ") ()"), OperatorOf("((q ?x)) ()"));
+    EXPECT_THAT(DomainOf("(:op (!o ?x) :delete (" + word + "))").warnings, SizeIs(1));
+  }
+}
+
 TEST(OperatorReaderTest, ADeleteWhoseVariablesAreBoundIsNotWarnedOf) {
   for (const char* text :
        {"((plugged ?lamp ?s)) ((plugged ?lamp ?s)) ()", "((?goal ?s) ?x) ((p ?s) ?x) ()",
@@ -378,6 +390,50 @@ TEST(Shop2ProblemTest, FactsAreInTheirOrderAndMayHoldListsAndNumbers) {
   EXPECT_THAT(facts, ElementsAre("(on a b)", "(goals ((x 1) \"Y\"))", "(cost -2.5)", "(on a b)"));
   EXPECT_THAT(problem.tasks.items, IsEmpty());
   EXPECT_FALSE(problem.goal.has_value());
+}
+
+TEST(Shop2ProblemTest, WhatCannotBeAskedForAmongFactsIsPassedOver) {
+  const Problem problem = ProblemOf("d (nil (on a b) () (not (p x)) (or (q) (r)) (f 1)) ()");
+  EXPECT_THAT(problem.facts, SizeIs(2));
+  EXPECT_THAT(problem.warnings,
+              ElementsAre(AllOf(HasSubstr("test.lisp:1:34: problem 'p'"), HasSubstr("(not (p x))"),
+                                HasSubstr("(2 such)"), HasSubstr("passed over"))));
+  EXPECT_THAT(ProblemOf("d (nil () (on a b)) ()").warnings, IsEmpty());
+}
+
+TEST(Shop2ProblemTest, SeveralPairsOfFactsAndTasksAreSeveralProblems) {
+  for (const std::string head : {"(defproblem p d ", "(defproblem (p :domain d) "}) {
+    const auto problems =
+        ReadShop2Problems(head + "((f 1)) ((t1)) () ((t2)) nil nil ((f 2)) (t1))", "f.lisp");
+    ASSERT_THAT(problems, SizeIs(4)) << head;
+    const std::vector<std::string> names{"p", "p-2", "p-3", "p-4"};
+    for (std::size_t i = 0; i < problems.size(); ++i) {
+      EXPECT_EQ(problems[i].name, names[i]);
+      EXPECT_EQ(problems[i].domain, "d");
+    }
+    EXPECT_EQ(Outline(problems[1].tasks), "{(t2)}");
+    EXPECT_THAT(problems[2].tasks.items, IsEmpty());
+    EXPECT_EQ(ToString(problems[3].facts.at(0)), "(f 2)");
+  }
+}
+
+TEST(Shop2ProblemTest, OneThatIsWrongIsNoHarmToTheOthers) {
+  const auto problems = ReadShop2Problems(
+      "(defproblem p1 d ((at ?x)) ((t1)))\n(defproblem p2 d () ((t1)))\n"
+      "(defproblem)\n(defproblem p4 d () (:task))",
+      "f.lisp");
+  ASSERT_THAT(problems, SizeIs(4));
+  EXPECT_THAT(problems[0].fault, AllOf(HasSubstr("f.lisp:1:19"), HasSubstr("problem 'p1'")));
+  EXPECT_EQ(problems[1].fault, "");
+  EXPECT_THAT(problems[2].fault, HasSubstr("f.lisp:3:1"));
+  EXPECT_THAT(problems[3].fault, HasSubstr("f.lisp:4:21"));
+}
+
+TEST(Shop2ProblemTest, WhereAllAreWrongAllAreTold) {
+  const auto error = hires::test_support::ConfigErrorOf([] {
+    ReadShop2Problems("(defproblem p1 d ((at ?x)) ())\n(defproblem p2 d (at) ())", "f.lisp");
+  });
+  EXPECT_THAT(error, AllOf(HasSubstr("f.lisp:1:19"), HasSubstr("f.lisp:2:18")));
 }
 
 TEST(Shop2ProblemTest, AFileMayHoldDomainAndProblems) {

@@ -24,7 +24,8 @@ Domain LoadDomain(const std::string& path);
 void CheckSidecar(const std::string& domain_path, const Domain& domain);
 
 /// The problems in a file of the language of `domain`: one in HDDL, one or more in SHOP2. Their
-/// tasks are checked against the domain; one written for a domain of another name has a warning.
+/// tasks are checked against the domain; one written for a domain of another name has a warning. A
+/// problem that is wrong has its fault, and the others a warning of it; where all are wrong:
 /// @throws base::ConfigError as above, also where file and domain are of different languages.
 std::vector<Problem> LoadProblems(const std::string& path, const Domain& domain);
 

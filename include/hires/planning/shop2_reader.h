@@ -23,9 +23,14 @@ Domain ReadShop2Domain(std::string_view text, const std::string& source);
 
 /// All problems (`defproblem`, `make-problem`) of a text, in its order; a domain beside them is
 /// left alone, other forms are as above. Facts must be ground. Whether the tasks exist is told by
-/// CheckTasks.
+/// CheckTasks. A form with several pairs of facts and tasks, as JSHOP2 has them, holds problems
+/// NAME, NAME-2, ... One that is wrong among others is there with its fault.
 /// @throws base::ConfigError as above, also where there is no problem at all.
 std::vector<Problem> ReadShop2Problems(std::string_view text, const std::string& source);
+
+/// @throws base::ConfigError with the faults of all problems where each has one, and there are
+/// some.
+void RequireOneWithoutFault(const std::vector<Problem>& problems);
 
 /// Every task of `problem` has an operator or a method in `domain` that takes its arguments.
 /// @throws base::ConfigError naming the task and the nearest names.

@@ -46,6 +46,29 @@ void DropKnownWarnings(const Domain& domain, Problem* problem) {
   warnings.erase(std::remove_if(warnings.begin(), warnings.end(), is_known), warnings.end());
 }
 
+void NoteFaultyTasks(const Domain& domain, Problem* problem) {
+  if (!problem->fault.empty()) return;
+  try {
+    CheckTasks(*problem, domain);
+  } catch (const base::ConfigError& error) {
+    problem->fault = error.what();
+  }
+}
+
+/// Whoever plans for one problem of the file is told of the others.
+void WarnOfFaults(std::vector<Problem>* problems) {
+  const auto is_faulty = [](const Problem& problem) { return !problem.fault.empty(); };
+  const auto first = std::find_if(problems->begin(), problems->end(), is_faulty);
+  if (first == problems->end()) return;
+  const auto count = std::count_if(first, problems->end(), is_faulty);
+  const std::string more = count == 1 ? "" : fmt::format(" ({} such problems)", count);
+  const std::string text =
+      fmt::format("another problem of the file cannot be planned for: {}{}", first->fault, more);
+  for (Problem& problem : *problems) {
+    if (!is_faulty(problem)) problem.warnings.push_back(text);
+  }
+}
+
 std::vector<Problem> ReadProblems(const std::string& path, const Domain& domain) {
   const std::string text = base::ReadTextFile(path);
   const Domain::Language language = LanguageOf(text, path);
@@ -56,7 +79,9 @@ std::vector<Problem> ReadProblems(const std::string& path, const Domain& domain)
   }
   if (language == Domain::Language::kHddl) return {ReadHddlProblem(text, path, domain)};
   std::vector<Problem> problems = ReadShop2Problems(text, path);
-  for (const Problem& problem : problems) CheckTasks(problem, domain);
+  for (Problem& problem : problems) NoteFaultyTasks(domain, &problem);
+  RequireOneWithoutFault(problems);
+  WarnOfFaults(&problems);
   return problems;
 }
 

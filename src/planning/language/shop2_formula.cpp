@@ -5,6 +5,7 @@
 #include <iterator>
 #include <utility>
 
+#include "hires/planning/datum_reader.h"
 #include "planning/language/shop2_parts.h"
 
 namespace hires::planning::shop2 {
@@ -336,6 +337,28 @@ std::vector<Effect> ReadEffects(const Construct& in, const Datum& datum) {
   std::transform(datum.items.begin(), datum.items.end(), std::back_inserter(effects),
                  [&](const Datum& effect) { return ReadEffect(in, effect); });
   return effects;
+}
+
+std::vector<Effect> ReadDeletes(const Construct& in, const Datum& datum,
+                                std::vector<std::string>* warnings) {
+  if (!datum.IsList() || !datum.tail.empty() || !datum.Head().empty())
+    return ReadEffects(in, datum);
+  const auto is_inert = [](const Datum& item) {
+    const std::string_view head = item.Head();
+    return IsLogicalWord(head) && head != "forall" && head != "shop-forall";
+  };
+  const auto first = std::find_if(datum.items.begin(), datum.items.end(), is_inert);
+  if (first == datum.items.end()) return ReadEffects(in, datum);
+  warnings->push_back(
+      Located(in.source, first->place,
+              fmt::format("{}: the delete {} begins with a logical word and deletes nothing, as no "
+                          "fact has such a name; it is passed over; take it away, or write the "
+                          "atoms that shall go",
+                          in.name, Excerpt(*first))));
+  Datum rest = datum;
+  rest.items.erase(std::remove_if(rest.items.begin(), rest.items.end(), is_inert),
+                   rest.items.end());
+  return ReadEffects(in, rest);
 }
 
 }  // namespace hires::planning::shop2

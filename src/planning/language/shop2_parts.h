@@ -39,9 +39,15 @@ Precondition ReadPrecondition(const Construct& in, const Datum& datum);
 Precondition ReadConjunction(const Construct& in, const Datum& datum);
 
 std::vector<Effect> ReadEffects(const Construct& in, const Datum& datum);
+/// Without atoms named by a logical word, which SHOP deletes in vain: no fact has such a name.
+/// @param warnings  takes one where there are any.
+std::vector<Effect> ReadDeletes(const Construct& in, const Datum& datum,
+                                std::vector<std::string>* warnings);
 TaskNetwork ReadNetwork(const Construct& in, const Datum& datum);
 
-Operator ReadOperator(const std::string& source, const Datum& item);
+/// @param warnings  takes what is passed over.
+Operator ReadOperator(const std::string& source, const Datum& item,
+                      std::vector<std::string>* warnings);
 Method ReadMethod(const std::string& source, const Datum& item);
 Axiom ReadAxiom(const std::string& source, const Datum& item);
 

@@ -7,6 +7,7 @@
 #include <iterator>
 #include <utility>
 
+#include "hires/base/error.h"
 #include "hires/base/spelling.h"
 #include "hires/base/text.h"
 #include "hires/planning/datum_reader.h"
@@ -152,7 +153,8 @@ const Datum& NameIn(const Construct& in, const Datum& datum) {
 void ReadItem(const Construct& in, const Datum& item, Domain* domain) {
   const std::string_view head = item.Head();
   if (head == ":operator" || head == ":op") {
-    domain->operators.push_back(shop2::ReadOperator(in.source, shop2::WithOwnNames(item)));
+    domain->operators.push_back(
+        shop2::ReadOperator(in.source, shop2::WithOwnNames(item), &domain->warnings));
   } else if (head == ":method") {
     domain->methods.push_back(shop2::ReadMethod(in.source, shop2::WithOwnNames(item)));
   } else if (head == ":-") {
@@ -200,38 +202,96 @@ Datum DomainOption(const Datum& name) {
   return {};
 }
 
-std::vector<Datum> ReadFacts(const Construct& in, const Datum& facts) {
+/// SHOP takes an atom that is named like a logical word for a fact that nothing can ask for.
+void WarnOfInertFacts(const Construct& in, const std::vector<const Datum*>& facts,
+                      std::vector<std::string>* warnings) {
+  if (facts.empty()) return;
+  const std::string more = facts.size() == 1 ? "" : fmt::format(" ({} such)", facts.size());
+  warnings->push_back(Located(
+      in.source, facts.front()->place,
+      fmt::format("{}: the fact {}{} begins with a logical word, so that no condition can ask for "
+                  "it, and is passed over; take it away",
+                  in.name, Excerpt(*facts.front()), more)));
+}
+
+std::vector<Datum> ReadFacts(const Construct& in, const Datum& facts,
+                             std::vector<std::string>* warnings) {
   constexpr std::string_view kFactWanted = "a fact (predicate arguments...) without variables";
   const bool is_list = facts.IsNil() || (facts.IsList() && facts.tail.empty());
-  if (!is_list || !facts.Head().empty()) {
+  const std::string_view head = facts.Head();
+  if (!is_list || (!head.empty() && head != "nil")) {
     shop2::FailAbout(in, facts, "a list of facts, as in ((on a b) (clear a)), or nil");
   }
   std::vector<Datum> atoms;
+  std::vector<const Datum*> inert;
   for (const Datum& fact : facts.items) {
+    if (fact.IsNil()) continue;
+    if (shop2::IsLogicalWord(fact.Head())) {
+      inert.push_back(&fact);
+      continue;
+    }
     shop2::CheckAtom(in, fact, kFactWanted);
     if (!fact.tail.empty() || !IsGround(fact)) shop2::FailAbout(in, fact, kFactWanted);
     atoms.push_back(shop2::Unquoted(fact));
   }
+  WarnOfInertFacts(in, inert, warnings);
   return atoms;
 }
 
-Problem ReadProblem(const Datum& form, const std::string& source) {
+/// The name and the domain of a (defproblem ...), and where its facts and tasks begin.
+struct ProblemHead {
+  std::string name;
+  Datum domain;
+  std::size_t next{0};
+};
+
+ProblemHead ReadProblemHead(const Datum& form, const std::string& source) {
   const std::size_t size = form.items.size();
   const Construct unnamed{source, "problem"};
-  if ((size != 4 && size != 5) || !form.tail.empty()) {
+  const bool has_domain = size % 2 == 1;
+  const bool is_whole = has_domain || size == 4 || (size > 4 && form.items[2].IsList());
+  if (size < 4 || !is_whole || !form.tail.empty()) {
     shop2::FailAbout(unnamed, form, kProblemWanted);
   }
   const Datum& name = WithoutQuote(form.items[1]);
+  ProblemHead head;
+  head.name = NameIn(unnamed, name).text;
+  const Construct in{source, fmt::format("problem '{}'", head.name)};
+  head.domain = has_domain ? NameIn(in, WithoutQuote(form.items[2])) : DomainOption(name);
+  head.next = has_domain ? 3 : 2;
+  return head;
+}
+
+/// The `number`-th pair of facts and tasks of a form, counted from 0.
+Problem ReadProblem(const Datum& form, const ProblemHead& head, std::size_t number,
+                    const std::string& source) {
   Problem problem;
-  problem.name = NameIn(unnamed, name).text;
+  problem.name = number == 0 ? head.name : fmt::format("{}-{}", head.name, number + 1);
   problem.source = source;
+  problem.domain = head.domain.text;
+  problem.domain_place = head.domain.place;
   const Construct in{source, fmt::format("problem '{}'", problem.name)};
-  const Datum domain = size == 5 ? NameIn(in, WithoutQuote(form.items[2])) : DomainOption(name);
-  problem.domain = domain.text;
-  problem.domain_place = domain.place;
-  problem.facts = ReadFacts(in, WithoutQuote(form.items[size - 2]));
-  problem.tasks = shop2::ReadNetwork(in, shop2::WithOwnNames(WithoutQuote(form.items[size - 1])));
+  const std::size_t facts = head.next + 2 * number;
+  try {
+    problem.facts = ReadFacts(in, WithoutQuote(form.items[facts]), &problem.warnings);
+    problem.tasks =
+        shop2::ReadNetwork(in, shop2::WithOwnNames(WithoutQuote(form.items[facts + 1])));
+  } catch (const base::ConfigError& error) {
+    problem.fault = error.what();
+  }
   return problem;
+}
+
+/// JSHOP2 allows several pairs of facts and tasks in one form.
+void ReadProblemForm(const Datum& form, const std::string& source, std::vector<Problem>* problems) {
+  try {
+    const ProblemHead head = ReadProblemHead(form, source);
+    for (std::size_t i = 0; head.next + 2 * i < form.items.size(); ++i) {
+      problems->push_back(ReadProblem(form, head, i, source));
+    }
+  } catch (const base::ConfigError& error) {
+    problems->emplace_back().fault = error.what();
+  }
 }
 
 /// A definition at any place where FormCollector finds one.
@@ -245,6 +305,21 @@ bool HoldsDefinition(const Datum& form) {
 }
 
 }  // namespace
+
+void RequireOneWithoutFault(const std::vector<Problem>& problems) {
+  std::vector<std::string> faults;
+  for (const Problem& problem : problems) {
+    if (problem.fault.empty()) return;
+    faults.push_back(problem.fault);
+  }
+  constexpr std::size_t kMostTold = 5;
+  const std::size_t count = faults.size();
+  if (count > kMostTold) {
+    faults.resize(kMostTold);
+    faults.push_back(fmt::format("and {} more", count - kMostTold));
+  }
+  if (!faults.empty()) throw base::ConfigError(base::Join(faults, "\n"));
+}
 
 bool IsShop2File(std::string_view text, const std::string& source) {
   LispFile file;
@@ -276,13 +351,17 @@ std::vector<Problem> ReadShop2Problems(std::string_view text, const std::string&
   std::vector<Problem> problems;
   FormCollector file(text, source);
   for (const Datum& form : file.definitions()) {
-    if (IsProblem(form)) problems.push_back(ReadProblem(form, source));
+    if (IsProblem(form)) ReadProblemForm(form, source, &problems);
   }
-  for (Problem& problem : problems) problem.warnings = file.Warnings();
+  const std::vector<std::string> warnings = file.Warnings();
+  for (Problem& problem : problems) {
+    problem.warnings.insert(problem.warnings.begin(), warnings.begin(), warnings.end());
+  }
   if (problems.empty()) {
     FailAt(source, {1, 1},
            fmt::format("holds no problem, wanted {}; name another file", kProblemWanted));
   }
+  RequireOneWithoutFault(problems);
   return problems;
 }
 
