@@ -116,7 +116,7 @@ class DomainReader {
  private:
   void ReadDeclarations(const Sections& sections) {
     if (const Datum* section = OneOf(sections, ":requirements")) {
-      CheckRequirements(spot_.Within("(:requirements ...)"), *section);
+      CheckRequirements(spot_.Within("(:requirements ...)"), *section, &domain_.warnings);
     }
     ReadTypeSection(spot_.Within("(:types ...)"), OneOf(sections, ":types"), &vocabulary_);
     if (const Datum* section = OneOf(sections, ":constants")) {
@@ -307,7 +307,7 @@ class ProblemReader {
     const Sections sections = ReadSections(spot_, definition_.form, ProblemSections(), {});
     ReadDomainName(sections);
     if (const Datum* section = OneOf(sections, ":requirements")) {
-      CheckRequirements(spot_.Within("(:requirements ...)"), *section);
+      CheckRequirements(spot_.Within("(:requirements ...)"), *section, &problem_.warnings);
     }
     if (const Datum* section = OneOf(sections, ":objects")) {
       ReadObjects(spot_.Within("(:objects ...)"), *section, &vocabulary_);
