@@ -7,8 +7,10 @@
 #include <filesystem>
 
 #include "hires/base/error.h"
+#include "hires/planning/plan.h"
 #include "hires/planning/planner.h"
 #include "hires/planning/task_text.h"
+#include "hires/planning/validator.h"
 #include "support/temporary_folder.h"
 
 namespace hires::planning::planning_files_test {
@@ -191,6 +193,25 @@ TEST(LoadTest, TheProblemsBesideOneThatIsWrongCanBePlannedFor) {
   EXPECT_THAT(ErrorOf([&] { FindProblem(problems, "p1"); }), HasSubstr("p.lisp:1:22"));
   EXPECT_THAT(ErrorOf([&] { FindProblem(problems, "p3"); }), HasSubstr("did you mean '!go'"));
   EXPECT_THAT(ErrorOf([&] { FindProblem(problems, "p4"); }), HasSubstr("p.lisp:4:19"));
+}
+
+TEST(LoadTest, ADomainInTheLanguageOfJshop2IsPlannedFor) {
+  const hires::test_support::TemporaryFolder folder;
+  const std::string path = folder.Write("d.lisp", R"((defdomain labels (
+    (:operator (!stick ?box ?label ?way) () () ((labelled ?box ?label)))
+    (:method (mark ?box ?label)
+      ((call Member ?label (fragile heavy (call + 1 2))) (assign ?way (by hand ?box)))
+      ((!stick ?box ?label ?way)))))
+    (defproblem p labels () ((mark b1 heavy)) () ((mark b1 3)) () ((mark b1 light))))");
+  const Domain domain = LoadDomain(path);
+  const std::vector<Problem> problems = LoadProblems(path, domain);
+  ASSERT_THAT(problems, SizeIs(3));
+  const PlanResult heavy = FindPlans(domain, problems[0]);
+  ASSERT_EQ(heavy.outcome, PlanOutcome::kFound);
+  EXPECT_EQ(ToShop2Plan(heavy.plans[0]), "(!stick b1 heavy (by hand b1))\n");
+  EXPECT_THAT(ValidatePlan(domain, problems[0], heavy.plans[0]), IsEmpty());
+  EXPECT_EQ(FindPlans(domain, problems[1]).outcome, PlanOutcome::kFound);
+  EXPECT_EQ(FindPlans(domain, problems[2]).outcome, PlanOutcome::kNoPlan);
 }
 
 TEST(LoadTest, AMissingFileIsNamed) {

@@ -448,6 +448,50 @@ TEST(Shop2ProblemTest, AFileMayHoldDomainAndProblems) {
   for (const Problem& problem : problems) EXPECT_NO_THROW(CheckTasks(problem, domain));
 }
 
+// ------------------------------------------------------------------------------ JSHOP2's terms
+
+TEST(BareTermsTest, StandForThemselvesWhereCallAloneComputes) {
+  const std::string call = "(call < ?x 3)";
+  const auto outline = [&](const std::string& goal) { return OutlineOf("(" + call + goal + ")"); };
+  const std::string begin = "seq[eval=(< ?x 3) ";
+  EXPECT_EQ(outline("(call Member ?y (red green blue))"),
+            begin + "eval=(member ?y (list (quote red) (quote green) (quote blue)))]");
+  EXPECT_EQ(outline("(assign ?p (home ?y))"), begin + "assign?p=(list (quote home) ?y)]");
+  EXPECT_EQ(outline("(assign ?p fragile)"), begin + "assign?p=(quote fragile)]");
+  EXPECT_EQ(outline("(assign ?p (12 (call / 12 (call + 5 1)) (?x . (a . ?r)) \"s\" nil))"),
+            begin + "assign?p=(list 12 (/ 12 (+ 5 1)) (list* ?x (quote a) ?r) \"s\" nil)]");
+  EXPECT_EQ(outline("(not (call Member (call * 2 2) (2 (call + 1 3) 5)))"),
+            begin + "not[eval=(member (* 2 2) (list 2 (+ 1 3) 5))]]");
+}
+
+TEST(BareTermsTest, WhereLispComputesNothingChanges) {
+  for (const std::string goal :
+       {"(assign ?p (- ?x 1))", "(call > (length ?x) 3)", "(call member ?x '(red))",
+        "(eval (< ?x 3))", "(assign ?p (f (first ?x)))", "(call #'f ?x)"}) {
+    const std::string expected = OutlineOf("((assign ?q (home ?y)) " + goal + ")");
+    EXPECT_THAT(expected, HasSubstr("assign?q=(home ?y)")) << goal;
+  }
+  EXPECT_EQ(OutlineOf("((assign ?q (home ?y)))"), "seq[assign?q=(home ?y)]") << "nothing is called";
+  const std::string domain =
+      "(defdomain d ((:method (m ?x) ((call < ?x 3) (assign ?q (home ?x))) ())))";
+  for (const std::string form : {"(defun home (x) x)", "(in-package :x)", "(progn)"}) {
+    const Domain read = ReadShop2Domain(form + domain, "f.lisp");
+    EXPECT_THAT(Outline(read.methods[0].branches[0].precondition.condition),
+                HasSubstr("assign?q=(home ?x)"))
+        << form;
+  }
+}
+
+TEST(BareTermsTest, AListThatLooksLikeACallIsWarnedOfOnce) {
+  const auto warnings = [](const std::string& goals) {
+    return DomainOf("(:method (m ?x)\n((call < ?x 3) " + goals + ") ())").warnings;
+  };
+  EXPECT_THAT(warnings("(assign ?p (home ?x)) (assign ?q (shop ?x))"),
+              ElementsAre(AllOf(HasSubstr("test.lisp:2:27: "), HasSubstr("(home ?x)"),
+                                HasSubstr("JSHOP2"), HasSubstr("write (call home ...)"))));
+  EXPECT_THAT(warnings("(assign ?p red) (assign ?q (1 ?x))"), IsEmpty());
+}
+
 // ------------------------------------------------------------------------------ other forms
 
 constexpr const char* kWholeDomain = "(defdomain d ((:method (t1 ?x) () ())))\n";

@@ -31,6 +31,12 @@ void CheckTerm(const Construct& in, const Datum& datum, std::string_view wanted)
 /// The same for atoms, whose name is no logical word either.
 void CheckAtom(const Construct& in, const Datum& datum, std::string_view wanted);
 
+/// Writes the terms of a domain in JSHOP2's language as Lisp does: the value in (assign ?x value)
+/// and what a call gets are quoted, and lists made of their items. A domain in another language
+/// stays as it is: one without (call ...), or one that computes by anything else.
+/// @param warnings  takes one where a list was such a term that looks as if it were computed.
+void WriteBareTerms(const std::string& source, Datum* domain, std::vector<std::string>* warnings);
+
 /// An expression without SHOP's word `call`: (call + ?x 1) is (+ ?x 1).
 Datum ReadExpression(Datum datum);
 

@@ -48,6 +48,8 @@ class FormCollector {
   }
 
   std::vector<Datum>& definitions() { return definitions_; }
+  /// Nothing but definitions stands in it.
+  bool is_plain() const { return is_plain_; }
 
   /// One for each kind of thing that is left out.
   std::vector<std::string> Warnings() const {
@@ -111,6 +113,7 @@ class FormCollector {
 
   void Collect(Datum form) {
     const std::string head(WithoutPackage(form.Head()));
+    is_plain_ = is_plain_ && IsDefinition(head);
     if (IsDefinition(head)) {
       form.items[0].text = head;
       definitions_.push_back(std::move(form));
@@ -134,6 +137,7 @@ class FormCollector {
   const std::string& source_;
   LispFile file_;
   std::vector<Datum> definitions_;
+  bool is_plain_{true};
   Place first_passed_over_;
   std::vector<std::pair<std::string, std::vector<Place>>> passed_over_;  // by name, in order
 };
@@ -164,7 +168,7 @@ void ReadItem(const Construct& in, const Datum& item, Domain* domain) {
   }
 }
 
-Domain ReadDomain(const Datum& form, const std::string& source) {
+Domain ReadDomain(Datum form, bool is_plain, const std::string& source) {
   const Construct unnamed{source, "domain"};
   if (form.items.size() < 3 || !form.tail.empty()) {
     shop2::FailAbout(unnamed, form, kDomainWanted);
@@ -181,6 +185,8 @@ Domain ReadDomain(const Datum& form, const std::string& source) {
   if (!(items.IsList() && items.tail.empty()) && !items.IsNil()) {
     shop2::FailAbout(in, items, "a list of operators, methods and axioms");
   }
+  // Only Lisp has other forms.
+  if (is_plain) shop2::WriteBareTerms(source, &form.items[2], &domain.warnings);
   for (const Datum& item : items.items) ReadItem(in, item, &domain);
   shop2::CheckDomain(&domain);
   return domain;
@@ -330,7 +336,7 @@ bool IsShop2File(std::string_view text, const std::string& source) {
 
 Domain ReadShop2Domain(std::string_view text, const std::string& source) {
   FormCollector file(text, source);
-  const std::vector<Datum>& forms = file.definitions();
+  std::vector<Datum>& forms = file.definitions();
   const auto domain = std::find_if(forms.begin(), forms.end(), IsDomain);
   if (domain == forms.end()) {
     FailAt(source, {1, 1},
@@ -342,7 +348,7 @@ Domain ReadShop2Domain(std::string_view text, const std::string& source) {
            fmt::format("a second domain, the first stands in line {}; keep one in a file",
                        domain->place.line));
   }
-  Domain read = ReadDomain(*domain, source);
+  Domain read = ReadDomain(std::move(*domain), file.is_plain(), source);
   for (const std::string& warning : file.Warnings()) read.warnings.push_back(warning);
   return read;
 }
