@@ -296,6 +296,22 @@ TEST(HddlTypesTest, ATypeThatIsOnlyAParentIsDeclaredByThat) {
                                    "(%type-anything mug)", "(%type-anything x)"));
 }
 
+TEST(HddlDomainTest, TheFaultOfEachActionAndMethodIsToldAtOnce) {
+  try {
+    ReadHddlDomain(
+        "(define (domain d) (:predicates (p)) (:task t)\n"
+        "(:action a :effect (q))\n(:action b :parameters () :precondition (r))\n"
+        "(:method m :task (t) :subtasks (u))\n(:method n :task (t) :subtasks (a)))",
+        "bad.hddl");
+    FAIL() << "nothing was wrong";
+  } catch (const base::ConfigError& error) {
+    for (const std::string line : {"bad.hddl:2:", "bad.hddl:3:", "bad.hddl:4:"}) {
+      EXPECT_THAT(error.what(), HasSubstr(line));
+    }
+    EXPECT_THAT(error.what(), ::testing::Not(HasSubstr("bad.hddl:5:")));
+  }
+}
+
 TEST(HddlRequirementsTest, SingularsAndMisspellingsOfTheCompetitionAreKnown) {
   EXPECT_NO_THROW(ReadHddlDomain(
       "(define (domain d) (:requirements :hierachie :existential-precondition :Method-Precondition "

@@ -206,6 +206,18 @@ TEST(MalformedTest, Problems) {
   });
 }
 
+TEST(MalformedTest, EachItemsFaultIsToldAtOnce) {
+  const std::string message = ErrorOf(
+      DomainWith("(:operator (load ?x) () ())\n(:method (m) () 7)\n(:- p ((q)))\n(:static p)"));
+  for (const std::string place :
+       {"bad.lisp:3:12", "bad.lisp:4:17", "bad.lisp:5:5", "bad.lisp:6:1"}) {
+    EXPECT_THAT(message, HasSubstr(place));
+  }
+  std::string many;
+  for (int i = 0; i < 1000; ++i) many += "(:static p)";
+  EXPECT_THAT(ErrorOf(DomainWith(many)), HasSubstr("and 990 more"));
+}
+
 TEST(MalformedTest, NoProblemAtAll) {
   try {
     ReadShop2Problems("(defdomain d ())", "bad.lisp");

@@ -8,6 +8,7 @@
 #include "hires/base/text.h"
 #include "hires/planning/datum_reader.h"
 #include "hires/planning/domain.h"
+#include "planning/language/faults.h"
 #include "planning/language/hddl_effect.h"
 #include "planning/language/hddl_formula.h"
 #include "planning/language/hddl_network.h"
@@ -104,9 +105,15 @@ class DomainReader {
     const Sections sections =
         ReadSections(spot_, definition_.form, DomainSections(), {":task", ":method", ":action"});
     ReadDeclarations(sections);
-    for (const Datum* form : AllOf(sections, ":action")) ReadAction(*form);
+    Faults faults;
+    for (const Datum* form : AllOf(sections, ":action")) {
+      faults.Collect([&] { ReadAction(*form); });
+    }
     CollectStaticConditions();
-    for (const Datum* form : AllOf(sections, ":method")) ReadMethod(*form);
+    for (const Datum* form : AllOf(sections, ":method")) {
+      faults.Collect([&] { ReadMethod(*form); });
+    }
+    faults.Require();
     AddMissingMethods();
     domain_.facts = TypeFacts(spot_.Within("(:constants ...)"), vocabulary_, nullptr);
     domain_.vocabulary = std::make_shared<HddlVocabulary>(std::move(vocabulary_));

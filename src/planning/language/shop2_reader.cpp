@@ -11,6 +11,7 @@
 #include "hires/base/spelling.h"
 #include "hires/base/text.h"
 #include "hires/planning/datum_reader.h"
+#include "planning/language/faults.h"
 #include "planning/language/shop2_parts.h"
 
 namespace hires::planning {
@@ -187,7 +188,9 @@ Domain ReadDomain(Datum form, bool is_plain, const std::string& source) {
   }
   // Only Lisp has other forms.
   if (is_plain) shop2::WriteBareTerms(source, &form.items[2], &domain.warnings);
-  for (const Datum& item : items.items) ReadItem(in, item, &domain);
+  Faults faults;
+  for (const Datum& item : items.items) faults.Collect([&] { ReadItem(in, item, &domain); });
+  faults.Require();
   shop2::CheckDomain(&domain);
   return domain;
 }
@@ -313,18 +316,12 @@ bool HoldsDefinition(const Datum& form) {
 }  // namespace
 
 void RequireOneWithoutFault(const std::vector<Problem>& problems) {
-  std::vector<std::string> faults;
+  Faults faults;
   for (const Problem& problem : problems) {
     if (problem.fault.empty()) return;
-    faults.push_back(problem.fault);
+    faults.Add(problem.fault);
   }
-  constexpr std::size_t kMostTold = 5;
-  const std::size_t count = faults.size();
-  if (count > kMostTold) {
-    faults.resize(kMostTold);
-    faults.push_back(fmt::format("and {} more", count - kMostTold));
-  }
-  if (!faults.empty()) throw base::ConfigError(base::Join(faults, "\n"));
+  faults.Require();
 }
 
 bool IsShop2File(std::string_view text, const std::string& source) {
