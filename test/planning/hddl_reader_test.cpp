@@ -312,6 +312,32 @@ TEST(HddlDomainTest, TheFaultOfEachActionAndMethodIsToldAtOnce) {
   }
 }
 
+/// What is said of a problem with a goal alone, in a domain with these methods.
+std::string GoalAloneError(const std::string& methods) {
+  const Domain domain = ReadHddlDomain(
+      "(define (domain d) (:predicates (p)) (:task t) (:action a :effect (p))" + methods + ")",
+      "d.hddl");
+  try {
+    ReadHddlProblem("(define (problem x) (:domain d) (:init) (:goal (p)))", "x.pddl", domain);
+  } catch (const base::ConfigError& error) {
+    return error.what();
+  }
+  return "no error";
+}
+
+TEST(HddlProblemTest, WithoutTasksWhereNothingIsDecomposedItIsCalledPddl) {
+  EXPECT_THAT(GoalAloneError("(:method m :task (t) :subtasks (a))"),
+              AllOf(HasSubstr("(:htn ...) is missing"), ::testing::Not(HasSubstr("PDDL"))));
+  const Domain plain =
+      ReadHddlDomain("(define (domain d) (:predicates (p)) (:action a :effect (p)))", "d.hddl");
+  try {
+    ReadHddlProblem("(define (problem x) (:domain d) (:init) (:goal (p)))", "x.pddl", plain);
+    FAIL() << "nothing was wrong";
+  } catch (const base::ConfigError& error) {
+    EXPECT_THAT(error.what(), AllOf(HasSubstr("(:htn ...) is missing"), HasSubstr("PDDL")));
+  }
+}
+
 TEST(HddlRequirementsTest, SingularsAndMisspellingsOfTheCompetitionAreKnown) {
   EXPECT_NO_THROW(ReadHddlDomain(
       "(define (domain d) (:requirements :hierachie :existential-precondition :Method-Precondition "

@@ -58,6 +58,17 @@ TEST(LanguageOfTest, OtherFilesAreNamed) {
   EXPECT_THAT(ErrorOf([] { LanguageOf("(setq x 1)", "notes.txt"); }), HasSubstr("(setq"));
 }
 
+TEST(LanguageOfTest, WhatIsWrittenInUtf16OrEmptyIsCalledSo) {
+  using std::string_literals::operator""s;
+  for (const std::string& text : {"\xFF\xFE(\0d\0"s, "\xFE\xFF\0(\0d"s, "(\0d\0"s, "\0(\0d"s}) {
+    EXPECT_THAT(ErrorOf([&] { LanguageOf(text, "d.lisp"); }),
+                AllOf(HasSubstr("d.lisp: "), HasSubstr("UTF-16"), HasSubstr("save it as UTF-8")));
+  }
+  for (const char* text : {"", " \n\t", "\xEF\xBB\xBF\n"}) {
+    EXPECT_THAT(ErrorOf([&] { LanguageOf(text, "d.lisp"); }), HasSubstr("it is empty, wanted"));
+  }
+}
+
 TEST(LanguageOfTest, FormsOfLispMayStandBefore) {
   using Language = Domain::Language;
   for (const std::string before : {"(progn (ql:quickload :shop3))", "(defpackage :x)", "#+x (f)",

@@ -356,8 +356,12 @@ class ProblemReader {
     }
     if (found == nullptr) {
       spot_.Fail(definition_.form,
-                 "(:htn ...) is missing; say which tasks are to be done, as in "
-                 "(:htn :ordered-subtasks (and (task a b)))");
+                 fmt::format("(:htn ...) is missing; say which tasks are to be done, as in "
+                             "(:htn :ordered-subtasks (and (task a b))){}",
+                             domain_.methods.empty()
+                                 ? ". The domain has no method either: this is PDDL, whose goals "
+                                   "a planner without tasks reaches; here tasks are decomposed"
+                                 : ""));
     }
     return *found;
   }

@@ -85,9 +85,27 @@ std::vector<Problem> ReadProblems(const std::string& path, const Domain& domain)
   return problems;
 }
 
+/// Letters of two bytes each: with a byte order mark, or with a zero beside each letter of ASCII.
+bool IsUtf16(std::string_view text) {
+  const std::string_view start = text.substr(0, 2);
+  return start == "\xFF\xFE" || start == "\xFE\xFF" ||
+         (start.size() == 2 && (start[0] == '\0') != (start[1] == '\0'));
+}
+
+std::string BeginOf(std::string_view text, const std::string& first_word) {
+  if (!first_word.empty()) return "begins with (" + Excerpt(MakeSymbol(first_word));
+  const bool is_blank = text.find_first_not_of(" \t\r\n\f\v\xEF\xBB\xBF") == text.npos;
+  return is_blank ? "is empty" : "begins with no word in parentheses";
+}
+
 }  // namespace
 
 Domain::Language LanguageOf(std::string_view text, const std::string& source) {
+  if (IsUtf16(text)) {
+    throw base::ConfigError(fmt::format(
+        "{}: is no planning file as it is: it is written in UTF-16, wanted UTF-8; save it as UTF-8",
+        source));
+  }
   const std::string word = FirstWord(text, source);
   if (word == "define") return Domain::Language::kHddl;
   for (const char* known : {"defdomain", "defproblem", "make-problem", "in-package"}) {
@@ -98,9 +116,9 @@ Domain::Language LanguageOf(std::string_view text, const std::string& source) {
       !word.empty() || text.find("#+") != text.npos || text.find("#-") != text.npos;
   if (may_be_lisp && IsShop2File(text, source)) return Domain::Language::kShop2;
   throw base::ConfigError(fmt::format(
-      "{}: is no planning file: it begins with {}, wanted (defdomain or (defproblem for SHOP2, "
-      "(define for HDDL; name another file",
-      source, word.empty() ? "no word in parentheses" : "(" + Excerpt(MakeSymbol(word))));
+      "{}: is no planning file: it {}, wanted (defdomain or (defproblem for SHOP2, (define for "
+      "HDDL; name another file",
+      source, BeginOf(text, word)));
 }
 
 Domain LoadDomain(const std::string& path) {
