@@ -109,6 +109,8 @@ TEST(MalformedTest, Operators) {
        {"bad.lisp:3:20", "came (in a)", "a list of effects"}},
       {DomainWith("(:operator (!load) (in) () ((not (in a))))"),
        {"bad.lisp:3:29", "'not' is a logical word"}},
+      {DomainWith("(:operator (!load) () ((:protection (not (p)))))"),
+       {"bad.lisp:3:24", "operator '!load'", "(:protection (not (p)))", "as SHOP3 can"}},
       {DomainWith("(:operator (!load) ((:protection)) ())"),
        {"bad.lisp:3:21", "came (:protection)", "(:protection (predicate"}},
       {DomainWith("(:operator (!load) ((forall (?u) (p ?u))) ())"),

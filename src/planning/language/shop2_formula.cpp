@@ -284,6 +284,14 @@ Effect ReadProtection(const Construct& in, const Datum& datum) {
   WantArguments(in, datum, 1, 1, kForm);
   Effect effect = MakeEffect(Effect::Kind::kProtection, datum);
   effect.term = Unquoted(datum.items[1]);
+  if (effect.term.Head() == "not") {
+    Fail(in, datum.place,
+         fmt::format(
+             "{} protects that an atom does not hold, as SHOP3 can; here atoms that hold are "
+             "protected alone; protect another atom, or check in the preconditions of what "
+             "adds this one",
+             Excerpt(datum)));
+  }
   if (effect.term.kind != Datum::Kind::kVariable) CheckAtom(in, effect.term, kForm);
   return effect;
 }
