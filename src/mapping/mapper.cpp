@@ -9,7 +9,7 @@
 #include <optional>
 #include <vector>
 
-#include "hires/base/averages.h"
+#include "base/averages.h"
 #include "hires/base/check.h"
 #include "hires/base/error.h"
 #include "hires/base/progress.h"

@@ -8,10 +8,10 @@
 #include <nlohmann/json.hpp>
 #include <utility>
 
+#include "base/averages.h"
 #include "cli/exit_code.h"
 #include "cli/outputs.h"
 #include "cli/report_output.h"
-#include "hires/base/averages.h"
 #include "hires/base/error.h"
 #include "hires/base/text.h"
 #include "hires/perception/pcd_file.h"
