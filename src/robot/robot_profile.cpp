@@ -145,14 +145,24 @@ bool SpanAnArea(const geometry::Polygon& corners) {
   return false;
 }
 
-/// Corners in either direction of turning; an empty list stands for "from the shapes".
-geometry::Polygon ReadFootprint(ParamReader* in) {
+/// As `{x: .., y: ..}`, or in pairs as move_base's parameter of the same name has them.
+geometry::Polygon ReadCorners(ParamReader* in) {
   geometry::Polygon corners;
   for (ParamReader& corner : in->SubList("footprint")) {
+  if (const auto pairs = in->FindPairs("footprint", Between(-100.0, 100.0))) {
+    for (const auto& [x, y] : *pairs) corners.emplace_back(x, y);
+    return corners;
+  }
     const double x = corner.Get("x", Between(-100.0, 100.0));
     corners.emplace_back(x, corner.Get("y", Between(-100.0, 100.0)));
   }
   if (corners.empty()) return corners;
+  return corners;
+}
+
+/// Corners in either direction of turning; an empty list stands for "from the shapes".
+geometry::Polygon ReadFootprint(ParamReader* in) {
+  const geometry::Polygon corners = ReadCorners(in);
   if (!SpanAnArea(corners)) {
     in->Fail("footprint", "wanted at least three corners that do not lie on one line");
   }
@@ -214,6 +224,11 @@ RobotProfile ReadProfile(ParamReader* in) {
   if (in->Has("laser_link")) profile.laser_link = in->GetString("laser_link");
   if (in->Has("footprint")) profile.footprint = ReadFootprint(in);
   if (in->Has("footprint_padding")) {
+  if (in->Has("robot_radius")) {
+    in->Fail("robot_radius",
+             "wanted `footprint` in its place, the corners from above: a round robot of 0.2 m is "
+             "in [[0.2, 0.2], [-0.2, 0.2], [-0.2, -0.2], [0.2, -0.2]]");
+  }
     profile.footprint_padding = in->Get("footprint_padding", Between(0.0, 1.0));
   }
   if (in->Has("joints")) profile.joints = ReadJoints(in->Sub("joints"));
