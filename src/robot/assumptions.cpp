@@ -181,6 +181,13 @@ std::vector<std::string> AssumptionsOf(const Robot& robot, const IsGiven& is_giv
   std::vector<std::string> texts;
   const Bounds bounds = LinkBounds(robot);
   if (!is_given("footprint")) texts.push_back(FootprintText(robot, bounds));
+  if (!HasShapes(robot.model)) {
+    texts.push_back(
+        fmt::format("shapes: no link has a <collision>, so nothing of it touches anything; its "
+                    "ways keep its footprint clear of what stands up to {:g} m over the floor; add "
+                    "<collision> shapes to the URDF",
+                    kFootprintTop));
+  }
   const std::vector<std::string> left_out = LeftOut(robot, bounds);
   if (!left_out.empty()) {
     texts.push_back(

@@ -149,6 +149,11 @@ std::vector<std::string> RobotModel::JointNames() const {
   return names;
 }
 
+bool HasShapes(const RobotModel& model) {
+  return std::any_of(model.links.begin(), model.links.end(),
+                     [](const Link& link) { return !link.collisions.empty(); });
+}
+
 const Joint* FindJoint(const RobotModel& model, const std::string& name) {
   for (const Link& link : model.links) {
     if (link.joint && link.joint->name == name) return &*link.joint;

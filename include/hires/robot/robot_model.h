@@ -58,6 +58,8 @@ struct RobotModel {
   std::vector<std::string> JointNames() const;  ///< movable ones that mimic no other
 };
 
+/// Whether any link has a collision shape.
+bool HasShapes(const RobotModel& model);
 /// The joint of that name, or nullptr.
 const Joint* FindJoint(const RobotModel& model, const std::string& name);
 /// Index of the link that the joint of that name carries.
