@@ -7,16 +7,15 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <locale>
 #include <optional>
 #include <set>
-#include <sstream>
 
 #include "hires/base/check.h"
 #include "hires/base/log.h"
 #include "hires/base/text.h"
 #include "hires/geometry/inertia.h"
 #include "hires/geometry/pose.h"
+#include "robot/urdf/xml_numbers.h"
 
 namespace hires::robot {
 namespace {
@@ -34,24 +33,6 @@ const std::map<std::string, std::set<std::string>>& Kept() {
 
 constexpr double kFarthestCentre = 1e3;  // [m] of a centre of mass: beyond lies a slip of units
 
-/// `count` numbers and nothing else.
-std::optional<std::vector<double>> NumbersIn(const char* text, std::size_t count) {
-  if (text == nullptr) return std::nullopt;
-  std::istringstream in(text);
-  in.imbue(std::locale::classic());
-  std::vector<double> numbers(count, 0.0);
-  for (double& number : numbers) in >> number;
-  if (in.fail() || !(in >> std::ws).eof()) return std::nullopt;
-  return numbers;
-}
-
-std::optional<double> NumberIn(const XMLElement* element, const char* attribute) {
-  const auto numbers =
-      element == nullptr ? std::nullopt : NumbersIn(element->Attribute(attribute), 1);
-  if (!numbers || !std::isfinite(numbers->front())) return std::nullopt;
-  return numbers->front();
-}
-
 /// Whether a shape is a point or a line. A plate of no height is another thing: something lies on
 /// it.
 bool IsOfNoSize(const XMLElement& shape) {
@@ -62,20 +43,6 @@ bool IsOfNoSize(const XMLElement& shape) {
   }
   return (kind == "sphere" || kind == "cylinder" || kind == "capsule") &&
          NumberIn(&shape, "radius") == 0.0;
-}
-
-/// Of an element's <origin>; the identity where it has none.
-std::optional<geometry::Pose3> OriginOf(const XMLElement& element) {
-  const XMLElement* origin = element.FirstChildElement("origin");
-  if (origin == nullptr) return geometry::Pose3();
-  const auto read = [&](const char* attribute) {
-    return origin->Attribute(attribute) == nullptr ? std::vector<double>{0.0, 0.0, 0.0}
-                                                   : NumbersIn(origin->Attribute(attribute), 3);
-  };
-  const auto xyz = read("xyz"), rpy = read("rpy");
-  if (!xyz || !rpy) return std::nullopt;
-  return geometry::Pose3{{(*xyz)[0], (*xyz)[1], (*xyz)[2]},
-                         geometry::RotationFromRpy((*rpy)[0], (*rpy)[1], (*rpy)[2])};
 }
 
 /// What makes an <inertial> one that no body has.
