@@ -185,8 +185,7 @@ std::string NumbersText(const MotionSet& set) {
                      set.max_angular_acceleration);
 }
 
-std::string DriveText(const Robot& robot) {
-  const DriveGuess guess = GuessDrive(robot.model);
+std::string DriveText(const DriveGuess& guess) {
   std::string text = fmt::format("base_controller.drive: guessed to be {}, because it has {}",
                                  ToString(guess.drive), guess.why);
   return text + "; if that is wrong, write `base_controller: {drive: ..}` in a profile";
@@ -213,7 +212,13 @@ std::string TrayText(const Robot& robot, const IsGiven& is_given) {
 }
 
 void AddMotion(const Robot& robot, const IsGiven& is_given, std::vector<std::string>* texts) {
-  if (!is_given("base_controller.drive")) texts->push_back(DriveText(robot));
+  const DriveGuess guess = GuessDrive(robot.model, robot.profile.base_link);
+  const bool drives_sideways = robot.profile.base_controller.drive == Drive::kOmnidirectional;
+  if (!is_given("base_controller.drive")) {
+    texts->push_back(DriveText(guess));
+  } else if (!guess.misfit.empty() && !drives_sideways) {
+    texts->push_back("base_link: " + guess.misfit);
+  }
   std::vector<std::string> missing;
   for (const char* key : {"motion_sets", "base_controller"}) {
     if (!is_given(key)) missing.emplace_back(key);

@@ -376,10 +376,10 @@ void PlaceOnNamedTray(const ParamReader& in, const RobotModel& model, RobotProfi
   PutOnTray(model, profile);
 }
 
-void SetGuessedDrive(const RobotModel& model, BaseControllerParams* params) {
-  const DriveGuess guess = GuessDrive(model);
-  params->drive = guess.drive;
-  params->min_turning_radius = guess.min_turning_radius;
+void SetGuessedDrive(const RobotModel& model, RobotProfile* profile) {
+  const DriveGuess guess = GuessDrive(model, profile->base_link);
+  profile->base_controller.drive = guess.drive;
+  profile->base_controller.min_turning_radius = guess.min_turning_radius;
 }
 
 /// Answers carry this among their caveats; the line is for whoever follows a node's log.
@@ -398,7 +398,7 @@ void FillFromModel(ParamReader in, Robot* robot) {
   if (!in.Has("base_link")) profile.base_link = robot->model.links.front().name;
   if (!in.Has("tray_link")) profile.tray_link = GuessTray(robot->model);
   if (!in.Has("base_controller") || !in.Sub("base_controller").Has("drive")) {
-    SetGuessedDrive(robot->model, &profile.base_controller);
+    SetGuessedDrive(robot->model, &profile);
   }
 }
 
@@ -465,7 +465,7 @@ Robot WithoutFootprint(const UrdfFile& file, UrdfReading* reading) {
   profile.base_link = robot.model.links.front().name;
   profile.tray_link = GuessTray(robot.model);
   if (!profile.tray_link.empty()) PutOnTray(robot.model, &profile);
-  SetGuessedDrive(robot.model, &profile.base_controller);
+  SetGuessedDrive(robot.model, &profile);
   StandOnFloor(&robot);
   return robot;
 }

@@ -123,9 +123,9 @@ void AddController(const Robot& robot, LineWriter* out) {
     out->AddAssumed(fmt::format("  {}: {}", key, value), comment);
   };
   out->AddAssumed("base_controller:", "how the base follows commands");
-  out->AddAssumed(
-      "  drive: " + ToString(params.drive),
-      "omnidirectional, differential or car_like; guessed from " + GuessDrive(robot.model).why);
+  out->AddAssumed("  drive: " + ToString(params.drive),
+                  "omnidirectional, differential or car_like; guessed from " +
+                      GuessDrive(robot.model, robot.profile.base_link).why);
   if (params.drive == Drive::kCarLike)
     line("min_turning_radius", params.min_turning_radius, "[m] guessed from its wheels");
   out->AddAssumed("  limits:", "what it can do at most");
