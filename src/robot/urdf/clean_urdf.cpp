@@ -9,12 +9,13 @@
 #include <cmath>
 #include <optional>
 #include <set>
+#include <sstream>
 
 #include "hires/base/check.h"
-#include "hires/base/log.h"
 #include "hires/base/text.h"
 #include "hires/geometry/inertia.h"
 #include "hires/geometry/pose.h"
+#include "robot/urdf/told.h"
 #include "robot/urdf/xml_numbers.h"
 
 namespace hires::robot {
@@ -31,6 +32,7 @@ const std::map<std::string, std::set<std::string>>& Kept() {
   return kept;
 }
 
+constexpr char kNoEnd[] = "1e16", kNoEndBelow[] = "-1e16";  // as others write joints without end
 constexpr double kFarthestCentre = 1e3;  // [m] of a centre of mass: beyond lies a slip of units
 
 /// Whether a shape is a point or a line. A plate of no height is another thing: something lies on
@@ -80,25 +82,6 @@ std::string NameOf(const XMLElement& element) {
   const char* name = element.Attribute("name");
   return name == nullptr ? "" : name;
 }
-
-/// What was changed of one kind, told at the end as one line.
-struct Told {
-  std::vector<std::string> names;
-  std::string first;  ///< "line 7: mass is 0 kg"
-
-  void Add(const XMLElement& element, const std::string& name, const std::string& what) {
-    if (names.empty()) {
-      first = fmt::format("line {}{}", element.GetLineNum(), what.empty() ? "" : ": " + what);
-    }
-    names.push_back(name);
-  }
-  void Tell(const std::string& where, const char* key, const char* reason) const {
-    if (names.empty()) return;
-    base::Log(base::LogLevel::kWarn,
-              fmt::format("urdf={} {}={} count={} first=\"{}\" reason=\"{}\"", where, key,
-                          base::Join(names, ","), names.size(), first, reason));
-  }
-};
 
 class UrdfCleaner {
  public:
@@ -250,9 +233,9 @@ class UrdfCleaner {
       const XMLElement* geometry = collision->FirstChildElement("geometry");
       const XMLElement* shape = geometry == nullptr ? nullptr : geometry->FirstChildElement();
       if (shape == nullptr) {
-        shapeless_.Add(*collision, NameOf(*link), "");
+        shapeless_.Add(collision->GetLineNum(), NameOf(*link), "");
       } else if (IsOfNoSize(*shape)) {
-        sizeless_.Add(*shape, NameOf(*link), shape->Name());
+        sizeless_.Add(shape->GetLineNum(), NameOf(*link), shape->Name());
       }
       if (shape == nullptr || IsOfNoSize(*shape)) link->DeleteChild(collision);
       collision = next;
@@ -262,7 +245,7 @@ class UrdfCleaner {
   void CheckInertial(XMLElement* link, XMLElement* inertial) {
     const Doubt doubt = DoubtOf(*inertial);
     if (doubt.why.empty()) return;
-    inertials_.Add(*inertial, NameOf(*link), doubt.why);
+    inertials_.Add(inertial->GetLineNum(), NameOf(*link), doubt.why);
     if (doubt.is_useless) link->DeleteChild(inertial);
   }
 
@@ -328,11 +311,6 @@ class UrdfCleaner {
     const char* type = joint->Attribute("type");
     const std::string kind = type == nullptr ? "" : type;
     CheckOrigin(joint, owner);
-    CheckNumbers(joint->FirstChildElement("axis"), "xyz", 3, owner, "0 0 1");
-    for (const char* key : {"lower", "upper", "effort", "velocity"})
-      CheckNumbers(joint->FirstChildElement("limit"), key, 1, owner, "0");
-    for (const char* key : {"multiplier", "offset"})
-      CheckNumbers(joint->FirstChildElement("mimic"), key, 1, owner, "1");
     static const std::set<std::string> known{"fixed",      "revolute", "prismatic",
                                              "continuous", "floating", "planar"};
     if (known.count(kind) == 0) {
@@ -340,25 +318,100 @@ class UrdfCleaner {
                     fmt::format("no valid URDF: {}: its type is '{}', wanted fixed, revolute, "
                                 "continuous or prismatic",
                                 owner, kind));
-      joint->SetAttribute("type", "fixed");
     }
-    if (kind == "floating" || kind == "planar") {
-      loose_.Add(*joint, NameOf(*joint), kind);
-      joint->SetAttribute("type", "fixed");
+    if (kind == "floating" || kind == "planar")
+      loose_.Add(joint->GetLineNum(), NameOf(*joint), kind);
+    if (kind != "revolute" && kind != "prismatic" && kind != "continuous") return Fix(joint);
+    CheckNumbers(joint->FirstChildElement("axis"), "xyz", 3, owner, "0 0 1");
+    for (const char* key : {"multiplier", "offset"})
+      CheckNumbers(joint->FirstChildElement("mimic"), key, 1, owner, "1");
+    const XMLElement* axis = joint->FirstChildElement("axis");
+    if (axis != nullptr && !IsDirection(*axis)) {
+      axisless_.Add(axis->GetLineNum(), NameOf(*joint), "");
+      return Fix(joint);
     }
-    if (kind != "revolute" && kind != "prismatic" && kind != "continuous") {
-      DeleteAllBut({"origin", "axis", "parent", "child"}, joint);
-      return;
-    }
+    CleanLimit(joint, kind);
+  }
+
+  /// What is left of a joint that does not move.
+  static void Fix(XMLElement* joint) {
+    joint->SetAttribute("type", "fixed");
+    DeleteAllBut({"origin", "parent", "child"}, joint);
+  }
+
+  static bool IsDirection(const XMLElement& axis) {
+    const auto xyz = NumbersIn(axis.Attribute("xyz"), 3);
+    if (!xyz) return false;
+    const double length = Eigen::Vector3d((*xyz)[0], (*xyz)[1], (*xyz)[2]).norm();
+    return length > 1e-6 && std::isfinite(length);
+  }
+
+  void CleanLimit(XMLElement* joint, const std::string& kind) {
     XMLElement* limit = joint->FirstChildElement("limit");
     if (limit == nullptr) {
       if (kind == "continuous") return;
-      unlimited_.Add(*joint, NameOf(*joint), kind);
+      unlimited_.Add(joint->GetLineNum(), NameOf(*joint), kind);
       limit = joint->InsertNewChildElement("limit");
     }
+    std::string unusable;
     for (const char* key : {"effort", "velocity"}) {
-      if (limit->Attribute(key) == nullptr) limit->SetAttribute(key, "0");
+      const char* text = limit->Attribute(key);
+      const auto value = NumberIn(limit, key);
+      if (value && *value >= 0.0) continue;
+      if (text != nullptr && unusable.empty()) unusable = fmt::format("{} is '{}'", key, text);
+      limit->SetAttribute(key, "0");
     }
+    if (!unusable.empty()) unusable_.Add(limit->GetLineNum(), NameOf(*joint), unusable);
+    if (kind != "continuous") return CleanRange(NameOf(*joint), limit);
+    const bool is_range = IsNumberOrLeftOut(*limit, "lower") &&
+                          IsNumberOrLeftOut(*limit, "upper") && !IsSwapped(*limit);
+    if (is_range) return;
+    limit->DeleteAttribute("lower");  // it turns without end
+    limit->DeleteAttribute("upper");
+  }
+
+  static bool IsNumberOrLeftOut(const XMLElement& element, const char* attribute) {
+    return element.Attribute(attribute) == nullptr || NumberIn(&element, attribute).has_value();
+  }
+
+  static bool IsSwapped(const XMLElement& limit) {
+    return NumberIn(&limit, "lower").value_or(0.0) > NumberIn(&limit, "upper").value_or(0.0);
+  }
+
+  /// Makes numbers of the lower and the upper end, in this order.
+  void CleanRange(const std::string& name, XMLElement* limit) {
+    const int line = limit->GetLineNum();
+    for (const char* key : {"lower", "upper"}) {
+      const char* text = limit->Attribute(key);
+      const int side = text == nullptr ? 0 : SideWithoutEnd(text);
+      if (side == 0) continue;
+      endless_.Add(line, name, fmt::format("{} is '{}'", key, text));
+      limit->SetAttribute(key, side > 0 ? kNoEnd : kNoEndBelow);
+    }
+    for (const char* key : {"lower", "upper"}) {
+      if (IsNumberOrLeftOut(*limit, key)) continue;
+      wordy_.Add(line, name, fmt::format("{} is '{}'", key, limit->Attribute(key)));
+      limit->DeleteAttribute("lower");  // both are 0 then
+      limit->DeleteAttribute("upper");
+    }
+    if (!IsSwapped(*limit)) return;
+    const double lower = NumberIn(limit, "lower").value_or(0.0);
+    const double upper = NumberIn(limit, "upper").value_or(0.0);
+    swapped_.Add(line, name, fmt::format("lower is {} and upper {}", lower, upper));
+    limit->SetAttribute("lower", fmt::format("{}", upper).c_str());
+    limit->SetAttribute("upper", fmt::format("{}", lower).c_str());
+  }
+
+  /// 1 for "inf", -1 for "-inf", 0 for all else, in any spelling that a number may have.
+  static int SideWithoutEnd(const std::string& text) {
+    std::istringstream in(base::ToLower(text));
+    std::string word, more;
+    in >> word;
+    if (in >> more) return 0;
+    const bool is_below = !word.empty() && word[0] == '-';
+    if (!word.empty() && (word[0] == '-' || word[0] == '+')) word.erase(0, 1);
+    if (word != "inf" && word != "infinity" && word != ".inf") return 0;
+    return is_below ? -1 : 1;
   }
 
   void Tell() const {
@@ -370,6 +423,14 @@ class UrdfCleaner {
     loose_.Tell(where_, "taken_as_fixed", "the base moves by itself, such joints do not");
     unlimited_.Tell(where_, "held_at_0",
                     "a joint that turns or slides needs a <limit>, which these have not");
+    wordy_.Tell(where_, "unreadable_limits",
+                "a limit that is no number says nothing, so that such a joint is held at 0");
+    swapped_.Tell(where_, "limits_swapped", "a lower limit above the upper one changes with it");
+    endless_.Tell(where_, "without_end", "a joint without end may go to 1e16");
+    unusable_.Tell(
+        where_, "unusable_limits",
+        "efforts and velocities that are no numbers of at least 0 are taken as not said");
+    axisless_.Tell(where_, "without_axis", "a joint whose axis is no direction does not move");
   }
 
   std::string where_;
@@ -379,6 +440,7 @@ class UrdfCleaner {
   XMLElement* robot_{nullptr};
   CleanUrdf clean_;
   Told inertials_, shapeless_, sizeless_, loose_, unlimited_;
+  Told wordy_, swapped_, endless_, unusable_, axisless_;
 };
 
 }  // namespace
