@@ -86,6 +86,22 @@ TEST_F(RobotMeshes, PackageThatHoldsTheUrdf) {
   EXPECT_EQ(MeshOf(LoadRobotModel(urdf))->triangles.size(), 1u);
 }
 
+TEST_F(RobotMeshes, SeveralSlashesAreOne) {
+  folder_.Write("arm_description/package.xml", "<package/>");
+  folder_.Write("arm_description/meshes/hand.obj", kTriangle);
+  SetPackagePath(folder_.path().string());
+  for (const char* inside : {"//meshes/hand.obj", "///meshes//hand.obj", "/meshes//./hand.obj"}) {
+    const std::string urdf = UrdfWith(std::string("package://arm_description") + inside);
+    EXPECT_EQ(MeshOf(ParseRobotModel(urdf, "r.urdf"))->triangles.size(), 1u) << inside;
+  }
+  for (const char* none : {"", "/", "//", "//../secret.obj", "/meshes/../../secret.obj"}) {
+    const std::string urdf = UrdfWith(std::string("package://arm_description") + none);
+    EXPECT_THAT([&] { ParseRobotModel(urdf, "r.urdf"); },
+                ThrowsMessage<base::ConfigError>(HasSubstr("no file inside a package")))
+        << none;
+  }
+}
+
 TEST_F(RobotMeshes, MissingFileNamesLinkAndPlace) {
   const std::string urdf = folder_.Write("r.urdf", UrdfWith("meshes/none.stl"));
   EXPECT_THAT([&] { LoadRobotModel(urdf); },
