@@ -53,6 +53,8 @@ class ModelBuilder {
     ReadMeshes();
     AddTree();
     ResolveMimics();
+    outline_.endless_friction.Tell(where_, "endless_friction",
+                                   "an infinite friction is taken as 1000");
     return {std::move(model_), std::move(doubts_)};
   }
 

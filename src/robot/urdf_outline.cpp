@@ -16,6 +16,8 @@ namespace {
 
 using tinyxml2::XMLElement;
 
+constexpr double kNoSlip = 1e3;  // a coefficient with which nothing on a robot slips
+
 class OutlineReader {
  public:
   OutlineReader(const std::string& xml, UrdfProblems* problems) : problems_(*problems) {
@@ -198,7 +200,7 @@ class OutlineReader {
                               told.size(), base::Join(told, "', '")));
   }
 
-  /// The friction coefficient in <mu1>0.5</mu1> or, in older files, <mu1 value="0.5"/>.
+  /// The friction coefficient of a link, in <mu1>0.5</mu1> or, in older files, <mu1 value="0.5"/>.
   std::optional<double> FrictionIn(const XMLElement& gazebo, const char* tag) {
     const XMLElement* element = gazebo.FirstChildElement(tag);
     if (element == nullptr) return std::nullopt;
@@ -207,6 +209,12 @@ class OutlineReader {
                           ? element->QueryDoubleAttribute("value", &mu) == tinyxml2::XML_SUCCESS
                           : element->QueryDoubleText(&mu) == tinyxml2::XML_SUCCESS;
     if (read && std::isfinite(mu) && mu >= 0.0) return mu;
+    if (read && mu > 0.0 && std::isinf(mu)) {
+      const char* link = gazebo.Attribute("reference");
+      if (endless_.insert(link).second)
+        outline_.endless_friction.Add(element->GetLineNum(), link, fmt::format("<{}> is inf", tag));
+      return kNoSlip;
+    }
     problems_.Add(element->GetLineNum(), fmt::format("<{}> holds no friction coefficient; wanted a "
                                                      "finite number of at least 0",
                                                      tag));
@@ -237,6 +245,7 @@ class OutlineReader {
   const XMLElement* robot_{nullptr};
   UrdfOutline outline_;
   std::map<std::string, Carrier> carriers_;  // by child
+  std::set<std::string> endless_;            // links with an infinite friction
   std::set<std::string> loose_;              // children of useless joints
   std::size_t num_lost_{0};                  // useless joints whose child is not known
 };

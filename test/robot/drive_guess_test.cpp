@@ -39,6 +39,18 @@ TEST(DriveGuessTest, TwoParallelWheelsAreDifferential) {
   EXPECT_THAT(guess.why, HasSubstr("left_joint, right_joint"));
 }
 
+TEST(DriveGuessTest, WheelsThatMayTurnOnAndOnAreWheelsWhateverTheirTypeIsCalled) {
+  const auto wheel = [](const char* name, const char* limits) {
+    return fmt::format(
+        R"(<joint name="{0}" type="revolute"><parent link="base"/><child link="{0}_l"/><axis xyz="0 1 0"/><limit {1} effort="1" velocity="1"/></joint><link name="{0}_l"/>)",
+        name, limits);
+  };
+  for (const char* limits : {R"(lower="-1e16" upper="1e16")", R"(lower="-inf" upper="inf")"})
+    EXPECT_THAT(GuessFor(wheel("l", limits) + wheel("r", limits)).why, HasSubstr("wheels: l, r"));
+  const char* narrow = R"(lower="-1" upper="1")";
+  EXPECT_THAT(GuessFor(wheel("l", narrow) + wheel("r", narrow)).why, HasSubstr("no wheels"));
+}
+
 TEST(DriveGuessTest, SwivelCastersBesideDrivenWheelsChangeNothing) {
   const std::string casters = Caster("a") + Caster("b") + Caster("c") + Caster("d");
   EXPECT_EQ(GuessFor(casters + Turning("left", "base", "0 1 0") + Turning("right", "base", "0 1 0"))

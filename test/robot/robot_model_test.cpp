@@ -2,11 +2,13 @@
 
 #include <gmock/gmock.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "hires/base/error.h"
 #include "hires/base/rng.h"
 #include "hires/geometry/angles.h"
+#include "support/log_catcher.h"
 
 namespace hires::robot::robot_model_test {
 namespace {
@@ -168,6 +170,28 @@ TEST(ForwardKinematics, AFollowerStopsAtItsLimits) {
     EXPECT_LT(X_AF.rotation.angularDistance(wanted.rotation), 1e-9) << arm;
     EXPECT_LT((X_AF.translation - wanted.translation).norm(), 1e-9) << arm;
   }
+}
+
+TEST(ParseRobotModel, AnInfiniteFrictionIsALargeOneAndIsTold) {
+  const auto friction_of = [](const std::string& mu) {
+    return ParseRobotModel(
+               "<robot name='r'>\n<link name='a'><collision><geometry><sphere radius='1'/>"
+               "</geometry></collision></link>\n<gazebo reference='a'>" +
+                   mu + "</gazebo></robot>",
+               "r.urdf")
+        .links[0]
+        .collisions[0]
+        .friction;
+  };
+  for (const char* mu :
+       {"<mu1>inf</mu1>", "<mu1>Infinity</mu1><mu2>+inf</mu2>", "<mu2 value='inf'/>"}) {
+    const hires::test_support::LogCatcher log(base::LogLevel::kWarn);
+    EXPECT_EQ(friction_of(mu), 1000.0) << mu;
+    EXPECT_THAT(log.lines, ::testing::ElementsAre(HasSubstr("endless_friction=a "))) << mu;
+  }
+  EXPECT_EQ(friction_of("<mu1>inf</mu1><mu2>0.5</mu2>"), 0.5);
+  EXPECT_THROW(friction_of("<mu1>-inf</mu1>"), base::ConfigError);
+  EXPECT_THROW(friction_of("<mu1>nan</mu1>"), base::ConfigError);
 }
 
 TEST(ForwardKinematics, RefusesJointsThatCannotBeSet) {

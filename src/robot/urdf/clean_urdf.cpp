@@ -33,6 +33,7 @@ const std::map<std::string, std::set<std::string>>& Kept() {
 }
 
 constexpr char kNoEnd[] = "1e16", kNoEndBelow[] = "-1e16";  // as others write joints without end
+constexpr double kManyTurns = 1e3;  // [rad] that a joint may turn to both sides, and so on and on
 constexpr double kFarthestCentre = 1e3;  // [m] of a centre of mass: beyond lies a slip of units
 
 /// Whether a shape is a point or a line. A plate of no height is another thing: something lies on
@@ -362,7 +363,11 @@ class UrdfCleaner {
       limit->SetAttribute(key, "0");
     }
     if (!unusable.empty()) unusable_.Add(limit->GetLineNum(), NameOf(*joint), unusable);
-    if (kind != "continuous") return CleanRange(NameOf(*joint), limit);
+    if (kind != "continuous") {
+      CleanRange(NameOf(*joint), limit);
+      if (kind == "revolute" && TurnsOn(*limit)) joint->SetAttribute("type", "continuous");
+      return;
+    }
     const bool is_range = IsNumberOrLeftOut(*limit, "lower") &&
                           IsNumberOrLeftOut(*limit, "upper") && !IsSwapped(*limit);
     if (is_range) return;
@@ -376,6 +381,12 @@ class UrdfCleaner {
 
   static bool IsSwapped(const XMLElement& limit) {
     return NumberIn(&limit, "lower").value_or(0.0) > NumberIn(&limit, "upper").value_or(0.0);
+  }
+
+  /// Limits that no joint reaches: other tools write wheels so.
+  static bool TurnsOn(const XMLElement& limit) {
+    return NumberIn(&limit, "lower").value_or(0.0) <= -kManyTurns &&
+           NumberIn(&limit, "upper").value_or(0.0) >= kManyTurns;
   }
 
   /// Makes numbers of the lower and the upper end, in this order.
