@@ -102,6 +102,37 @@ TEST_F(RobotMeshes, SeveralSlashesAreOne) {
   }
 }
 
+TEST_F(RobotMeshes, AModelIsFoundAsWorldsFindItOrAsAPackage) {
+  const std::string text = UrdfWith("model://arm/meshes/hand.obj");
+  EXPECT_EQ(::unsetenv("GAZEBO_MODEL_PATH"), 0);
+  for (const char* urdf : {"beside/r.urdf", "models_beside/r.urdf", "above/urdf/r.urdf",
+                           "itself/arm/urdf/r.urdf", "package/r.urdf", "variable/r.urdf"})
+    folder_.Write(urdf, text);
+  for (const char* mesh : {"beside/arm/meshes/hand.obj", "models_beside/models/arm/meshes/hand.obj",
+                           "above/models/arm/meshes/hand.obj", "itself/arm/meshes/hand.obj",
+                           "packages/arm/meshes/hand.obj", "gazebo/arm/meshes/hand.obj"})
+    folder_.Write(mesh, kTriangle);
+  folder_.Write("packages/arm/package.xml", "<package/>");
+  const auto load = [&](const char* urdf) {
+    return MeshOf(LoadRobotModel((folder_.path() / urdf).string()))->triangles.size();
+  };
+  for (const char* urdf :
+       {"beside/r.urdf", "models_beside/r.urdf", "above/urdf/r.urdf", "itself/arm/urdf/r.urdf"})
+    EXPECT_EQ(load(urdf), 1u) << urdf;
+  EXPECT_THAT([&] { load("variable/r.urdf"); },
+              ThrowsMessage<base::ConfigError>(
+                  AllOf(HasSubstr("'model://arm/meshes/hand.obj' is not there"),
+                        HasSubstr("GAZEBO_MODEL_PATH"), HasSubstr("line 2"))));
+  SetPackagePath((folder_.path() / "packages").string());
+  EXPECT_EQ(load("package/r.urdf"), 1u);
+  ::unsetenv("ROS_PACKAGE_PATH");
+  ::setenv("GAZEBO_MODEL_PATH", (folder_.path() / "gazebo").c_str(), 1);
+  EXPECT_EQ(load("variable/r.urdf"), 1u);
+  ::unsetenv("GAZEBO_MODEL_PATH");
+  EXPECT_THAT([&] { ParseRobotModel(UrdfWith("model://../secret.obj"), "r.urdf"); },
+              ThrowsMessage<base::ConfigError>(HasSubstr("names no file inside a model")));
+}
+
 TEST_F(RobotMeshes, MissingFileNamesLinkAndPlace) {
   const std::string urdf = folder_.Write("r.urdf", UrdfWith("meshes/none.stl"));
   EXPECT_THAT([&] { LoadRobotModel(urdf); },

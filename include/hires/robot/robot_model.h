@@ -71,9 +71,9 @@ bool IsBelow(const RobotModel& model, int link, int above);
 std::vector<std::string> LinksBelow(const RobotModel& model, const std::string& link);
 
 /// Reads a URDF. Collision meshes (package:// by ROS_PACKAGE_PATH or a folder above the file,
-/// file://, or relative to the file) are loaded; a missing one is an error. Friction comes from
-/// `<gazebo reference="link">` mu1 and mu2, the smaller of both; 1 where there is none, 1000
-/// for an infinite one.
+/// model:// as worlds have it, file://, or relative to the file) are loaded; a missing one is an
+/// error. Friction comes from `<gazebo reference="link">` mu1 and mu2, the smaller of both; 1 where
+/// there is none, 1000 for an infinite one.
 /// A mass that is not positive, inertias that are not positive definite and what is no number leave
 /// their `inertial` out; principal moments that break the triangle inequality, as invented ones of
 /// tiny frames do, are kept. One warning names the links of both. Joints that float are fixed,

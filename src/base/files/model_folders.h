@@ -10,9 +10,9 @@ namespace hires::base {
 bool Exists(const std::string& path);
 bool IsFolder(const std::string& path);
 
-/// Where model:// and https:// names are looked for, for a world or object file: models/ and the
-/// folder beside it, models/ beside the folders above it up to its package (worlds/ and models/
-/// side by side), `model_path`, what the environment names in GZ_SIM_RESOURCE_PATH,
+/// Where model:// and https:// names are looked for, for the file of a world, object or robot:
+/// models/ and the folder beside it, models/ beside the folders above it up to its package (worlds/
+/// and models/ side by side), `model_path`, what the environment names in GZ_SIM_RESOURCE_PATH,
 /// IGN_GAZEBO_RESOURCE_PATH, SDF_PATH, GAZEBO_MODEL_PATH and GAZEBO_RESOURCE_PATH, Gazebo's caches
 /// (~/.gz/fuel, ~/.ignition/fuel, ~/.gazebo/models), and our own ground plane and sun.
 std::vector<std::string> ModelFoldersFor(const std::string& file,
