@@ -34,6 +34,15 @@ std::string Written(const YAML::Node& node) {
   }
 }
 
+/// Null where the text is no YAML.
+YAML::Node TextAsYaml(const std::string& text) {
+  try {
+    return YAML::Load(text);
+  } catch (const YAML::Exception&) {
+    return YAML::Node();
+  }
+}
+
 /// Whether maps within maps lead to something by these keys.
 bool HasPath(const YAML::Node& map, const std::vector<std::string>& keys) {
   YAML::Node node = map;
@@ -262,6 +271,27 @@ ParamReader ParamReader::Sub(const std::string& key) {
   map_->subs.push_back(ParamReader(
       std::make_shared<Map>(map_->Require(key), map_->where, map_->prefix + key + ".")));
   return map_->subs.back();
+}
+
+std::optional<std::vector<std::pair<double, double>>> ParamReader::FindPairs(
+    const std::string& key, const Bound<double>& bound) {
+  YAML::Node list = map_->Require(key);
+  if (list.IsScalar()) list.reset(TextAsYaml(list.Scalar()));
+  if (!list.IsSequence() || (list.size() > 0 && !list[0].IsSequence())) return std::nullopt;
+  std::vector<std::pair<double, double>> pairs;
+  for (const YAML::Node& item : list) {
+    std::pair<double, double> pair;
+    const bool is_pair = item.IsSequence() && item.size() == 2 &&
+                         YAML::convert<double>::decode(item[0], pair.first) &&
+                         YAML::convert<double>::decode(item[1], pair.second) &&
+                         bound.holds(pair.first) && bound.holds(pair.second);
+    if (!is_pair) {
+      Fail(key, fmt::format("item {} is {}, wanted a pair [x, y] of numbers {}", pairs.size() + 1,
+                            YAML::Dump(item), bound.wanted));
+    }
+    pairs.push_back(pair);
+  }
+  return pairs;
 }
 
 std::vector<ParamReader> ParamReader::SubList(const std::string& key) {

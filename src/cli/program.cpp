@@ -163,6 +163,22 @@ bool IsInterrupted() {
   return interrupted;
 }
 
+void RefuseEmptyValues(const CLI::App& verb) {
+  std::vector<std::string> empty;
+  for (const CLI::Option* option : verb.get_options()) {
+    const std::vector<std::string>& values = option->results();
+    const bool is_empty = std::any_of(values.begin(), values.end(), [](const std::string& value) {
+      return value.find_first_not_of(" \t\n\r") == std::string::npos;
+    });
+    if (is_empty) empty.push_back(option->get_name());
+  }
+  if (empty.empty()) return;
+  throw base::ConfigError(fmt::format(
+      "{}: an empty text came, wanted a value; is a variable of the shell not set? Give one, or "
+      "leave it out",
+      base::Join(empty, ", ")));
+}
+
 int RunProgram(const Program& program, const std::vector<std::string>& arguments) {
   HIRES_CHECK(!arguments.empty(), "the program's name is missing");
   CLI::App app(program.description, program.name);

@@ -34,7 +34,7 @@ void ImaginationDesk::OnAnswer(const ImagineAnswered& answer) {
   }
   if (answer.outcome == Outcome::kAllFailed) return TakeFailed(&*question, answer);
   question->why_not = WhyNothing(answer);
-  question->is_hopeless = answer.outcome == Outcome::kInvalid;
+  question->is_hopeless = question->is_invalid = answer.outcome == Outcome::kInvalid;
   if (answer.outcome == Outcome::kUndecided) question->undecided = answer;
   if (!question->is_hopeless && !question->undecided)
     question->retry = session_.now() + session_.params().retry_period;
@@ -130,6 +130,15 @@ void ImaginationDesk::SettleAll() {
     if (question.is_open) targets.push_back(question.target);
   }
   for (const int target : targets) Settle(target);
+}
+
+std::vector<std::string> ImaginationDesk::Invalid() const {
+  std::vector<std::string> texts;
+  for (const Question& question : questions_) {
+    if (!question.is_invalid) continue;
+    texts.push_back(fmt::format("{}: {}", ToString(question.action), question.why_not));
+  }
+  return texts;
 }
 
 void ImaginationDesk::TakeDefaults(Question* question) {

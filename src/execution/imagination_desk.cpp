@@ -157,7 +157,7 @@ void ImaginationDesk::AskAgain(Question* question, const std::string& why) {
   Cancel(question);
   question->answer.reset();
   question->retry.reset();
-  question->is_hopeless = false;
+  question->is_hopeless = question->is_invalid = false;
   question->undecided.reset();
   question->why_not = why;
   Ask(question);

@@ -36,6 +36,8 @@ class ImaginationDesk {
   /// can answer, that is one.
   bool IsAnswered() const;
   void SettleAll();  ///< as if every step began
+  /// Of each question whose action makes no sense, "action: why".
+  std::vector<std::string> Invalid() const;
   std::optional<double> WakeAt() const;
 
  private:
@@ -46,6 +48,7 @@ class ImaginationDesk {
     planning::OnLate on_late{planning::OnLate::kDefault};
     bool is_open{true};  ///< its step has not begun
     bool is_hopeless{false};
+    bool is_invalid{false};  ///< hopeless, as the action makes no sense
     /// The answer says that it does not know. Asking the same again until it does would take chance
     /// for knowledge; so it counts as late, until something changes.
     std::optional<ImagineAnswered> undecided;

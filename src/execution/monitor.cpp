@@ -11,6 +11,7 @@
 #include "execution/step_watch.h"
 #include "hires/base/error.h"
 #include "hires/base/overloaded.h"
+#include "hires/base/text.h"
 #include "hires/planning/shop2_reader.h"
 #include "hires/planning/task_text.h"
 
@@ -160,6 +161,11 @@ void Monitor::Impl::EndDryRun() {
   durations.Update();
   if (!durations.IsAnswered()) return;
   durations.SayWhatIsUnknown();
+  // In earnest such a step would be begun with its default, and most likely be refused.
+  if (const std::vector<std::string> invalid = desk.Invalid(); !invalid.empty()) {
+    return Conclude(Finish::Outcome::kFailed, base::Join(invalid, "; "),
+                    base::FailureCode::kInvalidAction);
+  }
   Conclude(Finish::Outcome::kDryRun, "planned and imagined; nothing was begun");
 }
 

@@ -94,6 +94,7 @@ StepStatus PlanProgress::StatusOf(int index) const {
   status.plan = plan_index();
   status.index = index;
   status.action = step.action;
+  status.is_of_robot = step.kind == StepRun::Kind::kAction;
   status.phase = step.phase;
   status.started = step.started;
   status.finished = step.finished;

@@ -104,8 +104,7 @@ std::string TakeLaserMaximum(RobotLog* log) {
   for (RobotLog::Scan& scan : log->scans) scan.reading.range_max = largest;
   return fmt::format(
       "{:.4g} m is the largest range, in {:.1f} % of the beams and in many side by side: taken as "
-      "what the laser says where it meets nothing; a line PARAM robot_front_laser_max or the "
-      "max_range of ROBOTLASER1 may say otherwise",
+      "what the laser says where it meets nothing",
       largest, 100.0 * count.share());
 }
 

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <limits>
 #include <map>
+#include <optional>
 #include <set>
 #include <string_view>
 #include <utility>
@@ -20,6 +21,7 @@
 #include "hires/base/text.h"
 #include "hires/geometry/angles.h"
 #include "localisation/laser_maximum.h"
+#include "localisation/laser_places.h"
 #include "localisation/log_repair.h"
 #include "localisation/odometry_units.h"
 
@@ -30,20 +32,21 @@ using geometry::Pose2;
 
 constexpr std::size_t kMostLogBytes = std::size_t{1} << 30;
 constexpr int kMostLogLines = 20'000'000;
-constexpr int kMostRanges = 100'000;       // of a scan; remissions, too
-constexpr double kMostTime = 1e11;         // [s]
-constexpr double kMostReadTime = 1e20;     // of any unit
-constexpr double kMostCoordinate = 1e6;    // [m], [rad]
-constexpr double kLatest = 1.0;            // [s] by which a line may come too late
-constexpr double kCarmenMaxRange = 80.0;   // [m] what CARMEN assumes of FLASER
-constexpr double kCarmenMinRange = 0.01;   // [m] its accuracy there; 0 is no measurement
-constexpr double kSameSpan = 0.02;         // [rad] up to the digits that are written
-constexpr double kSameMounting = 0.05;     // [m], [rad] between two lines
-constexpr double kSamePose = 1e-3;         // [m], [rad] up to the digits that are written
-constexpr double kFarthestMounting = 3.0;  // [m] from the base
-constexpr int kWordsOfTime = 3;            // ipc_timestamp hostname logger_timestamp
-constexpr double kMostOddShare = 0.01;     // of the lines that can be read
-constexpr int kHopeless = 1000;            // odd lines, and none that can be read
+constexpr int kMostRanges = 100'000;         // of a scan; remissions, too
+constexpr double kMostTime = 1e11;           // [s]
+constexpr double kMostReadTime = 1e20;       // of any unit
+constexpr double kMostCoordinate = 1e6;      // [m], [rad]
+constexpr double kLatest = 1.0;              // [s] by which a line may come too late
+constexpr double kCarmenMaxRange = 80.0;     // [m] what CARMEN assumes of FLASER
+constexpr double kCarmenMinRange = 0.01;     // [m] its accuracy there; 0 is no measurement
+constexpr double kSameSpan = 0.02;           // [rad] up to the digits that are written
+constexpr double kSamePose = 1e-3;           // [m], [rad] up to the digits that are written
+constexpr double kFarthestMounting = 3.0;    // [m] from the base
+constexpr std::size_t kWordsOfTime = 3;      // ipc_timestamp hostname logger_timestamp
+constexpr std::size_t kWordsOfOdometry = 7;  // before those
+constexpr int kLinesOfForm = 1000;      // at the beginning, which show whether words are missing
+constexpr double kMostOddShare = 0.01;  // of the lines that can be read
+constexpr int kHopeless = 1000;         // odd lines, and none that can be read
 
 /// Why a line cannot be read.
 struct OddLine {
@@ -82,10 +85,24 @@ std::pair<const char*, int> UnitOfTime(double time) {
                                : std::make_pair("nanoseconds", 9);
 }
 
+/// Of a word that is no number, what it may be; else nothing.
+std::string QuestionOfComma(std::string_view word) {
+  return word.find(',') == std::string_view::npos
+             ? ""
+             : ": is that a decimal comma? Write points in the whole log (sed 's/,/./g')";
+}
+
 /// A number may begin with a plus, which std::from_chars does not take.
 std::string_view WithoutPlus(std::string_view word) {
   const bool is_signed = word.size() > 1 && word[0] == '+' && word[1] != '-' && word[1] != '+';
   return is_signed ? word.substr(1) : word;
+}
+
+bool IsNumber(std::string_view word) {
+  double number = 0.0;
+  word = WithoutPlus(word);
+  const auto [rest, error] = std::from_chars(word.data(), word.data() + word.size(), number);
+  return error == std::errc() && rest == word.data() + word.size();
 }
 
 class CarmenReader {
@@ -112,7 +129,12 @@ class CarmenReader {
     base::Log(base::LogLevel::kWarn, fmt::format("{}: {}", path_, what));
   }
 
+  std::string_view LineAt(std::size_t begin) const {
+    return std::string_view(text_).substr(begin, text_.find('\n', begin) - begin);
+  }
   void SplitLine(std::string_view line);
+  void FindForm();
+  std::optional<std::size_t> WordsBeforeTime();
   void TakeLine(std::string_view line);
   bool Repeats(std::string_view line);
   void PassOverOdd(const OddLine& odd, std::size_t end);
@@ -120,10 +142,14 @@ class CarmenReader {
   void TakeOdometry();
   void TakeFrontLaser();
   void TakeRobotLaser();
+  robot::ScanReading AngledReading(std::size_t n, std::string* doubt);
+  bool TakeRawLaser();
+  void TakeRawScans();
   bool RepeatsLastScan(const Pose2& pose, double time) const;
   bool IsOfTheFirstKind();
   double Angle(std::size_t index, const char* what, double most) const;
-  double IncrementOf(std::size_t n, double start, double fov, double resolution);
+  double IncrementOf(std::size_t n, double start, double fov, double resolution,
+                     std::string* doubt);
   void TakePoses(std::size_t first, RobotLog::Scan* scan);
   void AddScan(RobotLog::Scan scan, std::size_t first_of_odometry);
   void TakeUnits(std::size_t first, double time, OdometryUnits* units) const;
@@ -143,11 +169,12 @@ class CarmenReader {
   std::string NamesPassedOver() const {
     return base::Join(std::vector<std::string>(passed_over_.begin(), passed_over_.end()), ", ");
   }
-  void MountCorrectedLaser();
+  void TakeLasersOrMount();
   void TakeOdometryOfScans();
 
   std::string path_, text_;
   std::vector<std::string_view> words_;  // of the line that is read
+  std::size_t words_of_time_{kWordsOfTime}, words_of_odometry_{kWordsOfOdometry};
   std::string_view last_line_;
   int line_{0};
   RobotLog log_;
@@ -156,13 +183,15 @@ class CarmenReader {
   std::set<std::string> passed_over_;  // kinds of lines nobody here knows
   double range_max_{kCarmenMaxRange};  // of FLASER
   double laser_offset_{0.0};           // PARAM robot_frontlaser_offset
-  bool is_corrected_{false};           // the laser's place on the robot changes
+  LaserPlaces places_;                 // of the laser on the robot
   int num_repeated_lines_{0};          // that are equal to the one before
   OdometryUnits units_, units_of_scans_;
   std::string angles_doubt_;  // what was assumed of the first scan that tells them badly
   std::map<std::string, int> other_lasers_;  // lines of kinds that are not read
   int num_repeated_{0};                      // lines ODOM with which a mapper repeats a scan's pose
-  double last_odometry_{-kMostTime}, last_scan_{-kMostTime};  // latest times so far
+  std::vector<std::pair<int, RobotLog::Scan>> raw_;  // lines RAWLASER1, while there are no others
+  std::string raw_doubt_;                            // likewise of their angles
+  double last_odometry_{-kMostTime}, last_scan_{-kMostTime}, last_raw_{-kMostTime};  // latest times
   int late_lines_{0};
   double latest_{0.0};           // [s] the worst of them
   int num_readable_{0};          // lines of the kinds that are read, less the odd ones
@@ -171,6 +200,7 @@ class CarmenReader {
 };
 
 RobotLog CarmenReader::Read() {
+  FindForm();
   const std::string task = "reading " + path_;
   for (std::size_t begin = 0; begin < text_.size();) {
     if (++line_ > kMostLogLines)
@@ -202,6 +232,47 @@ void CarmenReader::SplitLine(std::string_view line) {
   }
 }
 
+/// Of a line that is read, if it begins well; of ODOM as it should be.
+std::optional<std::size_t> CarmenReader::WordsBeforeTime() {
+  try {
+    if (words_[0] == "ODOM") return kWordsOfOdometry;
+    if (words_[0] == "FLASER") return 8 + Count(1, "number of ranges");
+    const bool is_robot = words_[0] == "ROBOTLASER1";
+    if (!is_robot && words_[0] != "RAWLASER1") return std::nullopt;
+    const std::size_t n = Count(8, "number of ranges");
+    return (is_robot ? 21 : 10) + n + Count(9 + n, "number of remissions");
+  } catch (const OddLine&) {
+    return std::nullopt;
+  }
+}
+
+/// Some loggers write no times, or no acceleration in lines ODOM. It takes two lines to show it:
+/// one may be cut off.
+void CarmenReader::FindForm() {
+  int num_told = 0, num_timeless = 0, num_odometry = 0, num_short = 0;
+  std::size_t begin = 0;
+  for (int i = 0; i < kLinesOfForm && begin < text_.size(); ++i) {
+    const std::string_view line = LineAt(begin);
+    begin += line.size() + 1;
+    SplitLine(line);
+    const std::optional<std::size_t> count = words_.empty() ? std::nullopt : WordsBeforeTime();
+    if (!count) continue;
+    const std::size_t size = words_.size();
+    const bool is_odometry = words_[0] == "ODOM";
+    const bool has_host = size + 1 == *count + kWordsOfTime && !IsNumber(words_[size - 2]);
+    const bool is_short = is_odometry && (size + 1 == *count || has_host);
+    ++num_told;
+    num_timeless += size == *count || (is_odometry && size + 1 == *count) ? 1 : 0;
+    num_odometry += is_odometry ? 1 : 0;
+    num_short += is_short ? 1 : 0;
+  }
+  if (num_told > 1 && num_timeless == num_told) {
+    words_of_time_ = 0;
+    Warn("its lines have no times (ipc_timestamp hostname logger_timestamp)");
+  }
+  if (num_odometry > 1 && num_short == num_odometry) words_of_odometry_ = kWordsOfOdometry - 1;
+}
+
 void CarmenReader::TakeLine(std::string_view line) {
   if (Repeats(line)) return;
   if (words_[0] == "ODOM") {
@@ -212,7 +283,7 @@ void CarmenReader::TakeLine(std::string_view line) {
     if (IsOfTheFirstKind()) TakeRobotLaser();
   } else if (words_[0] == "PARAM") {
     return TakeParam();
-  } else {
+  } else if (words_[0] != "RAWLASER1" || !TakeRawLaser()) {
     return PassOver();
   }
   ++num_readable_;
@@ -277,7 +348,9 @@ void CarmenReader::TakeParam() {
 }
 
 void CarmenReader::TakeOdometry() {
-  WantWords(7, "ODOM x y theta tv rv accel");
+  WantWords(words_of_odometry_, words_of_odometry_ == kWordsOfOdometry
+                                    ? "ODOM x y theta tv rv accel"
+                                    : "ODOM x y theta tv rv");
   RobotLog::Odometry odometry;
   odometry.reading.X_OB = Pose(1, "odometry");
   odometry.reading.V_B.vx = Number(4, "tv", -kMostCoordinate, kMostCoordinate);
@@ -337,15 +410,44 @@ void CarmenReader::TakeRobotLaser() {
             "ROBOTLASER1 type start_angle fov resolution max_range accuracy mode, n, n ranges, m, "
             "m remissions, x y theta of laser and robot, tv rv forward side turn_axis");
   RobotLog::Scan scan;
-  scan.reading.angle_min = Angle(2, "start_angle", 2.0 * geometry::kPi);
-  scan.reading.angle_increment =
-      IncrementOf(n, scan.reading.angle_min, Number(3, "fov", -kMostCoordinate, kMostCoordinate),
-                  Angle(4, "angular resolution", geometry::kPi));
-  scan.reading.range_min = kCarmenMinRange;
-  scan.reading.range_max = Number(5, "max_range", 0.0, 1e6);
-  scan.reading.ranges = Ranges(9, n, kCarmenMinRange);
+  scan.reading = AngledReading(n, &angles_doubt_);
   TakePoses(10 + n + m, &scan);
   AddScan(std::move(scan), 13 + n + m);
+}
+
+/// Of ROBOTLASER1 and RAWLASER1, which begin alike.
+robot::ScanReading CarmenReader::AngledReading(std::size_t n, std::string* doubt) {
+  robot::ScanReading reading;
+  reading.angle_min = Angle(2, "start_angle", 2.0 * geometry::kPi);
+  reading.angle_increment =
+      IncrementOf(n, reading.angle_min, Number(3, "fov", -kMostCoordinate, kMostCoordinate),
+                  Angle(4, "angular resolution", geometry::kPi), doubt);
+  reading.range_min = kCarmenMinRange;
+  reading.range_max = Number(5, "max_range", 0.0, 1e6);
+  reading.ranges = Ranges(9, n, kCarmenMinRange);
+  return reading;
+}
+
+/// Many logs have the same scans again with poses: these are for logs that have no others.
+/// @return whether the line may be needed and can be read.
+bool CarmenReader::TakeRawLaser() {
+  if (!laser_kind_.empty()) return false;
+  try {
+    const std::size_t n = Count(8, "number of ranges");
+    const std::size_t m = Count(9 + n, "number of remissions");
+    WantWords(10 + n + m,
+              "RAWLASER1 type start_angle fov resolution max_range accuracy mode, n, n ranges, m, "
+              "m remissions");
+    RobotLog::Scan scan;
+    scan.reading = AngledReading(n, &raw_doubt_);
+    scan.time = Time();
+    if (last_raw_ - scan.time > kLatest) return false;
+    last_raw_ = std::max(last_raw_, scan.time);
+    raw_.emplace_back(line_, std::move(scan));
+  } catch (const OddLine&) {
+    return false;  // passed over, as lines of other lasers are
+  }
+  return true;
 }
 
 /// [rad] from -most to most.
@@ -360,7 +462,8 @@ double CarmenReader::Angle(std::size_t index, const char* what, double most) con
 
 /// By `resolution`, as CARMEN takes it, if `fov` does not say something else that goes better with
 /// the first beam, as of a laser that looks as far to the left as to the right.
-double CarmenReader::IncrementOf(std::size_t n, double start, double fov, double resolution) {
+double CarmenReader::IncrementOf(std::size_t n, double start, double fov, double resolution,
+                                 std::string* doubt) {
   if (n < 2) return resolution;
   if (std::abs(fov) > 2.0 * geometry::kPi + kSameSpan) fov = 0.0;  // degrees, or anything
   const double steps = static_cast<double>(n - 1), by_fov = fov / steps;
@@ -372,11 +475,11 @@ double CarmenReader::IncrementOf(std::size_t n, double start, double fov, double
     return resolution;
   const bool is_by_fov =
       resolution == 0.0 || std::abs(start + fov / 2.0) < std::abs(start + span / 2.0);
-  if (angles_doubt_.empty()) {
-    angles_doubt_ = InLine(fmt::format(
-        "ROBOTLASER1 of {} ranges says a resolution of {:.6g} rad, {:.6g} rad in all, and a fov of "
+  if (doubt->empty()) {
+    *doubt = InLine(fmt::format(
+        "{} of {} ranges says a resolution of {:.6g} rad, {:.6g} rad in all, and a fov of "
         "{:.6g} rad; taken is the {}, as the first beam is at {:.6g} rad",
-        n, resolution, span, fov, is_by_fov ? "fov" : "resolution", start));
+        words_[0], n, resolution, span, fov, is_by_fov ? "fov" : "resolution", start));
   }
   return is_by_fov ? by_fov : resolution;
 }
@@ -393,10 +496,8 @@ void CarmenReader::AddScan(RobotLog::Scan scan, std::size_t first_of_odometry) {
   scan.time = InOrder(Time(), &last_scan_);
   TakeUnits(first_of_odometry, scan.time, &units_of_scans_);
   laser_kind_ = words_[0];
-  const Pose2& first = log_.scans.empty() ? scan.X_BL : log_.scans.front().X_BL;
-  const bool is_same = (scan.X_BL.position() - first.position()).norm() <= kSameMounting &&
-                       std::abs(geometry::WrapToPi(scan.X_BL.yaw - first.yaw)) <= kSameMounting;
-  if (!is_same || scan.X_BL.position().norm() > kFarthestMounting) is_corrected_ = true;
+  raw_.clear();
+  places_.Take(scan.X_BL);
   log_.scans.push_back(std::move(scan));
   lines_.scans.push_back(line_);
 }
@@ -411,10 +512,11 @@ void CarmenReader::TakeUnits(std::size_t first, double time, OdometryUnits* unit
 
 /// @param count  of the words before those of the time.
 void CarmenReader::WantWords(std::size_t count, const std::string& form) const {
-  if (words_.size() == count + kWordsOfTime) return;
-  Odd(fmt::format("{} has {} words; wanted {}: {}, ipc_timestamp hostname logger_timestamp",
-                  words_[0], words_.size(), count + kWordsOfTime, form),
-      words_.size() < count + kWordsOfTime);
+  const std::size_t wanted = count + words_of_time_;
+  if (words_.size() == wanted) return;
+  Odd(fmt::format("{} has {} words; wanted {}: {}{}", words_[0], words_.size(), wanted, form,
+                  words_of_time_ > 0 ? ", ipc_timestamp hostname logger_timestamp" : ""),
+      words_.size() < wanted);
 }
 
 double CarmenReader::Number(std::size_t index, const char* what, double least, double most) const {
@@ -423,8 +525,9 @@ double CarmenReader::Number(std::size_t index, const char* what, double least, d
   const auto [rest, error] = std::from_chars(word.data(), word.data() + word.size(), number);
   const bool is_number = error == std::errc() && rest == word.data() + word.size();
   if (!is_number || !(number >= least && number <= most)) {
-    Odd(fmt::format("{} is '{}'; wanted a number from {} to {}", what,
-                    base::Shortened(std::string(words_[index]), 40), least, most));
+    Odd(fmt::format("{} is '{}'; wanted a number from {} to {}{}", what,
+                    base::Shortened(std::string(words_[index]), 40), least, most,
+                    QuestionOfComma(word)));
   }
   return number;
 }
@@ -450,8 +553,9 @@ Pose2 CarmenReader::Pose(std::size_t index, const char* what) const {
           geometry::WrapToPi(coordinate(index + 2, "theta"))};
 }
 
-/// Of the readings; the last three words say it.
+/// Of the readings; the last three words say it, if there are any.
 double CarmenReader::Time() const {
+  if (words_of_time_ == 0) return 0.0;
   const auto time = [&](std::size_t index, const char* what) {
     const double number = Number(index, what, -kMostReadTime, kMostReadTime);
     if (std::abs(number) <= kMostTime) return number;
@@ -489,8 +593,8 @@ std::vector<float> CarmenReader::Ranges(std::size_t first, std::size_t count,
     if (error == std::errc::result_out_of_range) {
       ranges[i] = kInvalid;  // 1e-60, 1e60
     } else if (error != std::errc() || rest != word.data() + word.size()) {
-      Odd(fmt::format("range {} is '{}'; wanted a number [m]", i + 1,
-                      base::Shortened(std::string(word), 40)));
+      Odd(fmt::format("range {} is '{}'; wanted a number [m]{}", i + 1,
+                      base::Shortened(std::string(word), 40), QuestionOfComma(word)));
     }
     if (!(ranges[i] >= range_min)) ranges[i] = kInvalid;
   }
@@ -499,6 +603,7 @@ std::vector<float> CarmenReader::Ranges(std::size_t first, std::size_t count,
 
 void CarmenReader::Finish() {
   RefuseWhatIsTooOdd();
+  if (log_.scans.empty() && !raw_.empty()) TakeRawScans();
   if (num_repeated_ > 0) {
     Warn(
         fmt::format("{} lines ODOM of time 0 repeat the pose of the scan before them, as where a "
@@ -516,11 +621,15 @@ void CarmenReader::Finish() {
   std::stable_sort(log_.scans.begin(), log_.scans.end(), earlier);
   const std::string contradicting = LeaveOutContradicting(&log_);
   if (!contradicting.empty()) Warn(contradicting);
-  if (is_corrected_) MountCorrectedLaser();
+  if (places_.do_vary()) TakeLasersOrMount();
   const bool has_odometry = !log_.odometry.empty();
   if (!has_odometry) TakeOdometryOfScans();
-  for (const std::string& what :
-       {TakeLaserMaximum(&log_), angles_doubt_, (has_odometry ? units_ : units_of_scans_).Doubt()})
+  const std::string maximum = TakeLaserMaximum(&log_);
+  if (!maximum.empty()) {
+    Warn(maximum +
+         "; a line PARAM robot_front_laser_max or the max_range of ROBOTLASER1 may say otherwise");
+  }
+  for (const std::string& what : {angles_doubt_, (has_odometry ? units_ : units_of_scans_).Doubt()})
     if (!what.empty()) Warn(what);
   SayWhatWasPassedOver();
 }
@@ -534,13 +643,41 @@ void CarmenReader::RefuseWhatIsTooOdd() const {
                     first_odd_, num_odd_ - 1, num_readable_, 100.0 * kMostOddShare));
   }
   if (!log_.scans.empty() || !log_.odometry.empty()) return;
+  if (!raw_.empty()) {
+    throw base::ConfigError(fmt::format(
+        "{}: has {} lines RAWLASER1, which tell no poses, and no line ODOM; wanted odometry", path_,
+        raw_.size()));
+  }
   if (!cut_.empty()) throw base::ConfigError(cut_);
   throw base::ConfigError(
       fmt::format("{}: has no line FLASER, ROBOTLASER1 or ODOM{}; wanted a CARMEN log", path_,
                   passed_over_.empty() ? "" : fmt::format(", but {}", NamesPassedOver())));
 }
 
-void CarmenReader::MountCorrectedLaser() {
+/// Where the robot was, lines ODOM tell; where its laser sits, a parameter.
+void CarmenReader::TakeRawScans() {
+  const int num_odd = other_lasers_["RAWLASER1"];
+  Warn(
+      fmt::format("{} lines RAWLASER1 tell no poses: odometry is interpolated between lines ODOM, "
+                  "and the laser is taken {} m before the base (PARAM robot_frontlaser_offset){}",
+                  raw_.size(), laser_offset_,
+                  num_odd > 0 ? fmt::format("; {} more cannot be read", num_odd) : ""));
+  for (auto& [line, scan] : raw_) {
+    scan.X_BL = {laser_offset_, 0.0, 0.0};
+    log_.scans.push_back(std::move(scan));
+    lines_.scans.push_back(line);
+  }
+  angles_doubt_ = raw_doubt_;
+}
+
+void CarmenReader::TakeLasersOrMount() {
+  const std::string lasers = places_.TextOfLasers();
+  if (!lasers.empty()) {
+    return Warn(
+        fmt::format("lines {} are of several lasers, by their places (x y yaw) on the "
+                    "robot, and all are taken: {}",
+                    laser_kind_, lasers));
+  }
   Warn(
       fmt::format("the laser's place on the robot is not the same in all lines, as where a mapper "
                   "has corrected the log; taken is {} m before the base (PARAM "

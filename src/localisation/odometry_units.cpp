@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "hires/base/averages.h"
+#include "base/averages.h"
 #include "hires/geometry/angles.h"
 #include "hires/geometry/pose.h"
 #include "hires/robot/odometry_jump.h"

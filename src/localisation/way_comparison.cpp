@@ -4,7 +4,7 @@
 #include <cmath>
 #include <cstddef>
 
-#include "hires/base/averages.h"
+#include "base/averages.h"
 #include "hires/geometry/angles.h"
 
 namespace hires::localisation {

@@ -1,6 +1,7 @@
 #include "loop/frame_record.h"
 
 #include <limits>
+#include <set>
 
 namespace hires::loop {
 namespace {
@@ -42,6 +43,12 @@ std::optional<double> FrameRecord::NewestOf(const std::string& parent,
   const auto found = poses_.find({parent, child});
   if (found == poses_.end() || found->second.empty()) return std::nullopt;
   return found->second.back().stamp;
+}
+
+std::vector<std::string> FrameRecord::Names() const {
+  std::set<std::string> names;
+  for (const auto& [link, poses] : poses_) names.insert({link.first, link.second});
+  return {names.begin(), names.end()};
 }
 
 }  // namespace hires::loop

@@ -4,6 +4,7 @@
 #include <optional>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "hires/sensing/frame_tree.h"
 #include "hires/sensing/history.h"
@@ -24,6 +25,7 @@ class FrameRecord : public sensing::FrameTree {
                           double time) const override;
   std::optional<double> NewestOf(const std::string& parent,
                                  const std::string& child) const override;
+  std::vector<std::string> Names() const override;
   void ForgetMoving() override { poses_.clear(); }
 
  private:

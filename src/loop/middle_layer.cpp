@@ -63,6 +63,16 @@ void MiddleLayer::Start(int activity, const ActionCall& action, double time_limi
   hooks_.ended(activity, ActionEnd::kFailed, refusal);
 }
 
+base::Failure MiddleLayer::Refusal(const ActionCall& action) const {
+  try {
+    skills::MakeSkill(*setup_.skills, action);
+    actions::GroupsOf(skills::SpecOf(*setup_.skills, action), action);
+  } catch (const base::ConfigError& error) {
+    return {base::FailureCode::kInvalidAction, {}, error.what()};
+  }
+  return {};
+}
+
 void MiddleLayer::Cancel(int activity) { runner_.Cancel(activity); }
 
 void MiddleLayer::Hear(const SensorNews& news, const simulation::LaserParams& laser) {

@@ -34,6 +34,8 @@ class MiddleLayer {
 
   /// An action that cannot begin ends at once.
   void Start(int activity, const base::ActionCall& action, double time_limit);
+  /// Why the action makes no sense to this robot in this world; nothing where it does.
+  base::Failure Refusal(const base::ActionCall& action) const;
   void Cancel(int activity);
   void CancelAll() { runner_.CancelAll(); }
 

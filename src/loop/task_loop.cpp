@@ -1,10 +1,15 @@
 #include "loop/task_loop.h"
 
+#include <fmt/format.h>
+
 #include <filesystem>
+#include <string>
 #include <utility>
+#include <vector>
 
 #include "hires/base/error.h"
 #include "hires/base/log.h"
+#include "hires/base/text.h"
 #include "loop/area_fluents.h"
 #include "loop/loop_parts.h"
 #include "loop/middle_layer.h"
@@ -141,6 +146,7 @@ class TaskPlay {
       run.report.status = monitor_.Status();
     } else {
       run.report = monitor_.Report();
+      if (run.report.outcome == AchieveOutcome::kDryRun) RefuseImpossibleSteps(&run.report);
     }
     run.truth_name = truth_.name;
     run.truth = {robot_.truth().objects(), robot_.truth().contact()};
@@ -152,6 +158,24 @@ class TaskPlay {
   template <typename... Args, typename... Values>
   static void Tell(const std::function<void(Args...)>& observe, const Values&... values) {
     if (observe) observe(values...);
+  }
+
+  /// In earnest these would be the steps at which the task ends.
+  void RefuseImpossibleSteps(AchieveReport* report) const {
+    std::vector<std::string> why;
+    for (const execution::StepStatus& step : report->status.steps) {
+      const bool is_to_begin = step.phase == execution::StepPhase::kWaiting ||
+                               step.phase == execution::StepPhase::kReady;
+      if (!step.is_of_robot || !is_to_begin) continue;
+      const base::Failure refusal = middle_layer_.Refusal(step.action);
+      if (!refusal) continue;
+      if (!report->failure) report->failure = refusal;
+      why.push_back(
+          fmt::format("step {}, {}: {}", step.index + 1, ToString(step.action), ToString(refusal)));
+    }
+    if (why.empty()) return;
+    report->outcome = AchieveOutcome::kFailed;
+    report->reason = base::Join(why, "; ");
   }
 
   void Send(const robot::Command& command) {

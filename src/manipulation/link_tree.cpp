@@ -7,6 +7,7 @@
 #include "hires/base/error.h"
 #include "hires/base/text.h"
 #include "manipulation/collision_shapes.h"
+#include "robot/limit_stop.h"
 
 namespace hires::manipulation {
 namespace {
@@ -40,6 +41,10 @@ LinkTree::Node LinkTree::MakeNode(const robot::RobotModel& model, int link) {
     node.leader = LinkOfJoint(model, joint.mimics);
     node.multiplier = joint.mimic_multiplier;
     node.offset = joint.mimic_offset;
+    if (joint.limits && joint.type != JointType::kContinuous) {
+      node.lower = joint.limits->lower;
+      node.upper = joint.limits->upper;
+    }
   }
   return node;
 }
@@ -76,7 +81,8 @@ void LinkTree::Compute(const robot::JointPositions& posture,
     const Node& node = nodes_[i];
     Eigen::Isometry3d& X = (*X_R)[i];
     X = node.parent < 0 ? node.X_PJ : (*X_R)[node.parent] * node.X_PJ;
-    const double position = node.multiplier * positions[node.leader] + node.offset;
+    const double position = robot::StoppedAt(
+        node.lower, node.upper, node.multiplier * positions[node.leader] + node.offset);
     if (node.type == JointType::kPrismatic) {
       X.translation() += X.linear() * (position * node.axis);
     } else if (node.type != JointType::kFixed) {

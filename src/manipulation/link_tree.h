@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Geometry>
+#include <limits>
 #include <string>
 #include <unordered_map>
 #include <vector>
@@ -35,6 +36,9 @@ class LinkTree {
     int leader{-1};  // link of the joint that sets this one's position
     double multiplier{1.0}, offset{0.0};
     double rest{0.0};
+    // Of a joint that follows another.
+    double lower{-std::numeric_limits<double>::infinity()};
+    double upper{std::numeric_limits<double>::infinity()};
   };
   static Node MakeNode(const robot::RobotModel& model, int link);
 

@@ -4,9 +4,11 @@
 
 #include <cmath>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "hires/base/text.h"
+#include "hires/geometry/angles.h"
 #include "mapping/scan_points.h"
 
 namespace hires::mapping {
@@ -29,7 +31,12 @@ constexpr double kMostApart = 0.4;      // of the returns
 constexpr double kMostThrough = 0.008;  // of the beams
 constexpr double kLeastExplained = 0.6;
 constexpr int kFewLost = 20;
-constexpr double kLeastAlike = 0.5;      // of the turns
+constexpr double kLeastAlike = 0.8, kMostAlike = 1.25;  // motion by the laser for that by odometry
+constexpr double kLeastTurned = 0.5,
+                 kMostTurned = 2.0;  // turns of bases that skid; the map is right
+constexpr int kFewDisagreed = 20;
+constexpr double kMostDisagreed = 0.75;  // of the stretches
+constexpr double kSameUnit = 0.1;        // by which a ratio may miss that of two units
 constexpr double kMostJumps = 0.2;       // of the scans
 constexpr double kMostLost = 1.0 / 3.0;  // of the scans
 
@@ -109,15 +116,71 @@ void JudgeBeams(const MapSketch& sketch, const OccupancyGrid& grid, MapEvidence*
 bool AreUntied(const MapReturns& returns) {
   return returns.num_apart >= kFewReturns && returns.num_apart > kMostApart * returns.num_judged;
 }
-bool AreTurnsUnlike(const MapCounts& counts) { return counts.turns_alike < kLeastAlike; }
+bool AreWaysUnlike(const MapCounts& counts) {
+  return counts.ways_alike < kLeastAlike || counts.ways_alike > kMostAlike;
+}
+bool AreTurnsUnlike(const MapCounts& counts, const MapEvidence& evidence) {
+  const double alike = counts.turns_alike;
+  return evidence.is_field_assumed ? alike < kLeastAlike || alike > kMostAlike
+                                   : alike < kLeastTurned || alike > kMostTurned;
+}
+bool DoDisagree(const MapCounts& counts) {
+  return counts.num_disagreed >= kFewDisagreed &&
+         counts.num_disagreed > kMostDisagreed * counts.num_stretches;
+}
 bool AreLost(const MapCounts& counts) {
   return counts.num_lost >= kFewLost && counts.num_lost > kMostLost * counts.num_scans;
+}
+
+/// Which unit or scale is another one than metres.
+std::string QuestionOfWays(double ways_alike) {
+  constexpr std::pair<double, const char*> kPerMetre[] = {{3.2808, "feet"},
+                                                          {10.0, "decimetres"},
+                                                          {39.37, "inches"},
+                                                          {100.0, "centimetres"},
+                                                          {1000.0, "millimetres"}};
+  const bool is_longer = ways_alike > 1.0;
+  const double factor = is_longer ? ways_alike : 1.0 / ways_alike;
+  for (const auto& [per_metre, unit] : kPerMetre) {
+    if (std::abs(factor / per_metre - 1.0) > kSameUnit) continue;
+    return is_longer
+               ? fmt::format("are the ranges in {}? Divide them by {:g}", unit, per_metre)
+               : fmt::format("is the odometry in {}? Divide its x and y by {:g}", unit, per_metre);
+  }
+  return "are ranges and odometry both in metres? Else check the scale of the odometry (radius and "
+         "ticks of the wheels)";
+}
+
+/// Lasers of half a circle have steps of 1, 0.5 or 0.25 degrees, or few of several degrees.
+bool IsFieldAssumed(double field_of_view, std::size_t num_steps) {
+  constexpr double kHalfCircle = 0.03;  // [rad] that may be one step less
+  const std::size_t num_even = num_steps + 1 - (num_steps + 1) % 2;
+  return num_even > 2 && std::abs(field_of_view - geometry::kPi) < kHalfCircle &&
+         720 % num_even != 0;
+}
+
+/// Where the beams' angles are the reason; empty: they cannot be.
+std::string QuestionOfAngles(double turns_alike, double field_of_view) {
+  if (turns_alike <= 0.0) return "";
+  const double by_turns = field_of_view / turns_alike;
+  if (field_of_view == 0.0 || by_turns > 2.0 * geometry::kPi * kMostAlike) return "";
+  const double degrees = 180.0 / geometry::kPi;
+  return fmt::format(
+      "does the laser see {:.0f} degrees, as the odometry's turns say, and not the {:.0f} that the "
+      "log says? Correct its angles (FLASER always means 180 degrees, ROBOTLASER1 says its own)",
+      degrees * by_turns, degrees * field_of_view);
 }
 
 }  // namespace
 
 MapEvidence EvidenceOf(const MapSketch& sketch, const OccupancyGrid& grid) {
   MapEvidence evidence;
+  if (!sketch.scans.empty()) {
+    const robot::ScanReading& first = sketch.scans.front()->reading;
+    const std::size_t num_steps = first.ranges.empty() ? 0 : first.ranges.size() - 1;
+    evidence.field_of_view = std::abs(first.angle_increment) * static_cast<double>(num_steps);
+    evidence.is_field_assumed = IsFieldAssumed(evidence.field_of_view, num_steps);
+  }
   evidence.returns = sketch.judge_returns();
   const double finer = grid.resolution / kJudgedCell;
   if (finer > 0.8 && finer < 1.25) {
@@ -144,11 +207,18 @@ std::string WhyDoubtful(const MapCounts& counts, const MapEvidence& evidence) {
   if (evidence.explained < kLeastExplained)
     against.push_back(
         fmt::format("{:.0f} % of the beams ended at its walls", 100.0 * evidence.explained));
-  if (AreTurnsUnlike(counts))
+  if (AreTurnsUnlike(counts, evidence))
     against.push_back(counts.turns_alike < 0.0
                           ? "laser and odometry turn in opposite directions"
                           : fmt::format("the laser sees {:.0f} % of the turns that odometry tells",
                                         100.0 * counts.turns_alike));
+  if (AreWaysUnlike(counts))
+    against.push_back(
+        fmt::format("the laser moves {:.3g} times as far as odometry tells", counts.ways_alike));
+  if (DoDisagree(counts))
+    against.push_back(
+        fmt::format("laser and odometry disagreed on {} of {} stretches of 0.5 m or 0.5 rad",
+                    counts.num_disagreed, counts.num_stretches));
   if (counts.num_breaks > 0)
     against.push_back(fmt::format(
         "breaks at which scans do not fit those before, and nothing ties both sides together: {}",
@@ -169,8 +239,13 @@ std::string WhatToDo(const MapCounts& counts, const MapEvidence& evidence) {
         "odometry jumped {} times at {} scans: is it in metres and radians, not in millimetres or "
         "degrees?",
         counts.odometry_jumps, counts.num_scans));
+  if (AreWaysUnlike(counts)) remedies.push_back(QuestionOfWays(counts.ways_alike));
+  const std::string angles = AreTurnsUnlike(counts, evidence)
+                                 ? QuestionOfAngles(counts.turns_alike, evidence.field_of_view)
+                                 : "";
+  if (!angles.empty()) remedies.push_back(angles);
   if (evidence.explained < kLeastExplained || evidence.through_walls > kMostThrough ||
-      AreTurnsUnlike(counts))
+      AreTurnsUnlike(counts, evidence) || DoDisagree(counts))
     remedies.push_back(
         "check the order, angles and unit of the ranges, the laser's place on the robot, and the "
         "odometry");

@@ -9,7 +9,7 @@
 #include <optional>
 #include <vector>
 
-#include "hires/base/averages.h"
+#include "base/averages.h"
 #include "hires/base/check.h"
 #include "hires/base/error.h"
 #include "hires/base/progress.h"
@@ -18,6 +18,7 @@
 #include "hires/robot/odometry_jumps.h"
 #include "mapping/draw_grid.h"
 #include "mapping/keyframe_map.h"
+#include "mapping/motion_comparison.h"
 #include "mapping/odometry_track.h"
 
 namespace hires::mapping {
@@ -32,7 +33,6 @@ constexpr double kUntoldSd = 0.1;        // [m], [rad] between scans without odo
 constexpr double kSearchedSd = 0.05;     // [m], [rad] of a pose that was searched for
 constexpr double kBeyond = 4.0;          // sd of a prior that no odometry errs by
 constexpr double kBeyondAtLeast = 0.03;  // [m], [rad] likewise
-constexpr double kTurnsTold = 0.5;       // [rad^2] of steps that tell whether turns are alike
 constexpr double kFitsNothing = 0.9;     // share of scans from which on there is no map
 constexpr double kUsualRange = 3.0;      // [m] in rooms
 constexpr double kSuspicious = 20.0;     // [m] more than that in the median is another unit
@@ -83,7 +83,7 @@ std::string QuestionOfUnits(const RobotLog& log) {
   return fmt::format(
       "; half of its ranges are longer than {:.0f}, wanted metres: are they in {}? Divide them by "
       "{}",
-      *middle, is_centimetres ? "centimetres" : "millimetres", is_centimetres ? 100 : 1000);
+      middle, is_centimetres ? "centimetres" : "millimetres", is_centimetres ? 100 : 1000);
 }
 
 }  // namespace
@@ -116,7 +116,10 @@ class Mapper::Impl {
             static_cast<int>(records_.size()),
             num_searched_,
             keyframes_.num_breaks(),
-            turned_ > kTurnsTold ? turned_alike_ / turned_ : 1.0};
+            comparison_.turns_alike(),
+            comparison_.ways_alike(),
+            comparison_.num_stretches(),
+            comparison_.num_disagreed()};
   }
   MapSketch sketch() const;
   MapResult Result();
@@ -156,8 +159,8 @@ class Mapper::Impl {
   Pose2 X_MB_;                 // at the last scan
   std::optional<Pose2> X_OB_;  // odometry there
   double time_{0.0}, way_{0.0};
-  double turn_{0.0};                        // [rad] that odometry told since the last scan
-  double turned_{0.0}, turned_alike_{0.0};  // [rad^2] by odometry, and by it and the laser
+  std::optional<Pose2> moved_;  // since the last scan, where odometry tells it
+  MotionComparison comparison_;
 
   std::vector<Record> records_;                               // of all scans
   std::vector<std::shared_ptr<const RobotLog::Scan>> drawn_;  // those that show something new
@@ -197,12 +200,16 @@ void Mapper::Impl::TakeScan(const RobotLog::Scan& scan) {
   if (!match && keyframes_.size() > 0) ++num_lost_;
   const Pose2 X_MBefore = X_MB_;
   X_MB_ = match ? match->X_MB : prior.X_MB;
-  if (match) turned_alike_ += turn_ * geometry::WrapToPi(X_MB_.yaw - X_MBefore.yaw);
-  if (match) turned_ += turn_ * turn_;
+  const bool disagree = match && ContradictsOdometry(*match, prior);
+  if (match && moved_) {
+    comparison_.Add(X_MBefore.Inverse() * X_MB_, *moved_, disagree);
+  } else {
+    comparison_.Restart();
+  }
   const bool is_due = !points.empty() && keyframes_.IsDue(X_MB_);
   NoteBreak(few, match, is_due);
   // Else the next slip of the odometry would be looked for from here on, beside this one.
-  if (match && ContradictsOdometry(*match, prior)) {
+  if (disagree) {
     anchor_ = {X_MB_, scan.X_OB, kSearchedSd};
     ++num_searched_;
   }
@@ -230,7 +237,7 @@ PosePrior Mapper::Impl::Predict(const RobotLog::Scan& scan) {
   const Pose2 moved = is_told ? X_OB_->Inverse() * *scan.X_OB : Pose2{};
   const bool is_jump = is_told && jumps_.IsJump(moved, scan.time - time_);
   if (is_jump) ++odometry_jumps_;
-  turn_ = is_jump ? 0.0 : geometry::WrapToPi(moved.yaw);
+  moved_ = is_told && !is_jump ? std::make_optional(moved) : std::nullopt;
   if (is_jump || !is_told) anchor_ = {X_MB_, scan.X_OB, is_jump ? kJumpSd : kUntoldSd};
   if (!is_jump) way_ += moved.position().norm();
   X_OB_ = scan.X_OB;

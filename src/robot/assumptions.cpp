@@ -5,14 +5,17 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <set>
 
 #include "base/files/plain_xml.h"
 #include "hires/base/text.h"
+#include "hires/geometry/segment.h"
 #include "hires/robot/link_bounds.h"
 #include "robot/base_height.h"
 #include "robot/drive_guess.h"
 #include "robot/tray_place.h"
+#include "robot/urdf/seen_shapes.h"
 
 namespace hires::robot {
 namespace {
@@ -21,6 +24,7 @@ using Bounds = std::vector<geometry::Aabb>;  // LinkBounds
 using IsGiven = std::function<bool(const std::string&)>;
 
 constexpr std::size_t kMostNames = 6;
+constexpr double kSeenBeyond = 0.05;  // [m] that what is only seen may reach beyond what collides
 
 std::string Few(const std::vector<std::string>& names) {
   if (names.size() <= kMostNames) return base::Join(names, ", ");
@@ -81,6 +85,86 @@ std::vector<std::string> JointsAtZero(const Robot& robot, const Bounds& bounds) 
   return names;
 }
 
+/// [m] 0 inside.
+double DistanceTo(const geometry::Polygon& outline, const Eigen::Vector2d& p) {
+  if (geometry::Contains(outline, p)) return 0.0;
+  double nearest = std::numeric_limits<double>::infinity();
+  for (std::size_t i = 0; i < outline.size(); ++i) {
+    const Eigen::Vector2d& next = outline[i + 1 == outline.size() ? 0 : i + 1];
+    nearest = std::min(nearest, (p - geometry::NearestOnSegment(p, outline[i], next)).norm());
+  }
+  return nearest;
+}
+
+/// [m] beyond the footprint, below its top, or above `top`, whichever is more.
+double ReachBeyond(const Robot& robot, const SeenShape& seen, const geometry::Pose3& X_BL,
+                   double top) {
+  const geometry::Pose3 X_BS = X_BL * seen.X_LS;
+  geometry::Polygon corners;
+  double upper = X_BS.translation.z();
+  if (seen.shape) {
+    corners = geometry::OutlineInBand(*seen.shape, X_BS, 0.0, kFootprintTop)
+                  .value_or(geometry::Polygon());
+    upper = geometry::BoundsOf(*seen.shape, X_BS).upper.z();
+  } else if (upper >= 0.0 && upper <= kFootprintTop) {
+    corners = {X_BS.translation.head<2>()};
+  }
+  double farthest = upper - top;
+  for (const Eigen::Vector2d& p : corners)
+    farthest = std::max(farthest, DistanceTo(robot.profile.footprint, p));
+  return farthest;
+}
+
+/// Whether a link is fixed to the base and to no link with a shape.
+std::vector<bool> OfAnUncoveredBase(const RobotModel& model, int base) {
+  std::vector<int> group(model.links.size(), 0);  // link that all links fixed to it share
+  for (std::size_t i = 1; i < group.size(); ++i) {
+    const Joint& joint = *model.links[i].joint;
+    group[i] = joint.type == JointType::kFixed ? group[joint.parent] : static_cast<int>(i);
+  }
+  std::vector<bool> uncovered(group.size(), false);
+  for (std::size_t i = 0; i < group.size(); ++i)
+    if (group[i] == group[base] && !model.links[i].collisions.empty()) return uncovered;
+  for (std::size_t i = 0; i < group.size(); ++i) uncovered[i] = group[i] == group[base];
+  return uncovered;
+}
+
+/// Links that are seen where nothing of the robot collides: outside its footprint or above its
+/// shapes. How far a mesh reaches is not known: it counts where its origin is there, and where it
+/// is the base's, of which nothing collides at all.
+std::string SeenText(const Robot& robot, const Bounds& bounds, const std::string& urdf_xml) {
+  const RobotModel& model = robot.model;
+  const auto X_R = ForwardKinematics(model, robot.profile.joints);
+  const int base = *model.FindLink(robot.profile.base_link);
+  geometry::Aabb all;
+  for (const geometry::Aabb& of_one : bounds) all.Include(of_one);
+  const double top = HasShapes(model) ? all.upper.z() : kFootprintTop;
+  const std::vector<bool> is_of_base = OfAnUncoveredBase(model, base);
+  const auto seen = ShapesSeenOnly(urdf_xml);
+  std::vector<std::string> names;
+  std::string farthest = "how far is not known, as meshes of looks are not read";
+  double most = 0.0;
+  for (std::size_t i = 0; i < model.links.size(); ++i) {
+    const auto shapes = seen.find(model.links[i].name);
+    if (shapes == seen.end()) continue;
+    bool counts = false;
+    for (const SeenShape& shape : shapes->second) {
+      const double beyond = ReachBeyond(robot, shape, X_R[base].Inverse() * X_R[i], top);
+      counts = counts || beyond > kSeenBeyond || (!shape.shape && is_of_base[i]);
+      if (beyond <= std::max(most, kSeenBeyond)) continue;
+      most = beyond;
+      farthest = fmt::format("'{}' reaches {:.2f} m beyond its footprint or above its shapes",
+                             model.links[i].name, beyond);
+    }
+    if (counts) names.push_back(model.links[i].name);
+  }
+  if (names.empty()) return "";
+  return fmt::format(
+      "shapes: seen, but with no <collision>, so that nothing touches them, are {}; {}; add "
+      "<collision> shapes to the URDF, or a `footprint` in a profile that has room for them",
+      Few(names), farthest);
+}
+
 bool IsLaserType(const std::string& type) {
   return type == "ray" || type == "gpu_ray" || type == "lidar" || type == "gpu_lidar";
 }
@@ -101,8 +185,7 @@ std::string NumbersText(const MotionSet& set) {
                      set.max_angular_acceleration);
 }
 
-std::string DriveText(const Robot& robot) {
-  const DriveGuess guess = GuessDrive(robot.model);
+std::string DriveText(const DriveGuess& guess) {
   std::string text = fmt::format("base_controller.drive: guessed to be {}, because it has {}",
                                  ToString(guess.drive), guess.why);
   return text + "; if that is wrong, write `base_controller: {drive: ..}` in a profile";
@@ -129,7 +212,13 @@ std::string TrayText(const Robot& robot, const IsGiven& is_given) {
 }
 
 void AddMotion(const Robot& robot, const IsGiven& is_given, std::vector<std::string>* texts) {
-  if (!is_given("base_controller.drive")) texts->push_back(DriveText(robot));
+  const DriveGuess guess = GuessDrive(robot.model, robot.profile.base_link);
+  const bool drives_sideways = robot.profile.base_controller.drive == Drive::kOmnidirectional;
+  if (!is_given("base_controller.drive")) {
+    texts->push_back(DriveText(guess));
+  } else if (!guess.misfit.empty() && !drives_sideways) {
+    texts->push_back("base_link: " + guess.misfit);
+  }
   std::vector<std::string> missing;
   for (const char* key : {"motion_sets", "base_controller"}) {
     if (!is_given(key)) missing.emplace_back(key);
@@ -181,6 +270,15 @@ std::vector<std::string> AssumptionsOf(const Robot& robot, const IsGiven& is_giv
   std::vector<std::string> texts;
   const Bounds bounds = LinkBounds(robot);
   if (!is_given("footprint")) texts.push_back(FootprintText(robot, bounds));
+  if (!HasShapes(robot.model)) {
+    texts.push_back(
+        fmt::format("shapes: no link has a <collision>, so nothing of it touches anything; its "
+                    "ways keep its footprint clear of what stands up to {:g} m over the floor; add "
+                    "<collision> shapes to the URDF",
+                    kFootprintTop));
+  }
+  const std::string seen = SeenText(robot, bounds, urdf_xml);
+  if (!seen.empty()) texts.push_back(seen);
   const std::vector<std::string> left_out = LeftOut(robot, bounds);
   if (!left_out.empty()) {
     texts.push_back(

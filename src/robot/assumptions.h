@@ -9,8 +9,8 @@
 namespace hires::robot {
 
 /// What no file says of the robot and yet what it does rests on, one sentence each, with what to
-/// write: footprint, joints that stand at zero, height of the base, laser, tray, drive, what of its
-/// motion is a PR2's.
+/// write: footprint, what is seen and collides with nothing, joints that stand at zero, height of
+/// the base, laser, tray, drive, what of its motion is a PR2's.
 /// @param is_given  whether the profile has a key, or "key.key"; none is given where a bare URDF
 /// was loaded.
 /// @param urdf_xml  text that the model is of.

@@ -17,7 +17,10 @@ namespace {
 
 constexpr double kHorizontal = 0.1;  // largest upward part of a wheel's axis
 constexpr double kParallel = 0.99;   // least cosine between two axes
-constexpr double kOnAxle = 0.01;  // [m] by which a link may lie off the axle and still be over it
+constexpr double kOnAxle = 0.01;   // [m] by which a link may lie off the axle and still be over it
+constexpr double kOnAxles = 0.05;  // [m] the same where wheels that slip make the axle
+constexpr double kSameFloor = 0.15;  // [m] by which the centres of a base's wheels differ in height
+constexpr double kAlongX = 0.2;      // largest forward part of an axle of wheels that roll along x
 
 // [rad] What a car's wheels are turned by at most where nothing says it; less than the second is no
 // steering, and more than the third would have the car turn on the spot.
@@ -27,14 +30,14 @@ constexpr double kMostSteering = 1.4;
 
 struct FixedWheel {
   std::string joint;
-  Eigen::Vector3d axis, centre;  // in the root frame
+  Eigen::Vector3d axis, centre;  // in the base frame
 };
 
 struct SteeredWheel {
   std::string joint;
   double largest_angle{0.0};  // [rad] that it can be turned to both sides
   bool has_limits{false};
-  Eigen::Vector3d centre;  // of the joint that steers, in the root frame
+  Eigen::Vector3d centre;  // of the joint that steers, in the base frame
 };
 
 struct Wheels {
@@ -68,20 +71,31 @@ std::optional<SteeredWheel> SteeredBy(const Joint& swivel, const geometry::Pose3
   return SteeredWheel{swivel.name, std::min(angle, kMostSteering), has_limits, X_RS.translation};
 }
 
-Wheels WheelsOf(const RobotModel& model) {
-  const std::vector<geometry::Pose3> X_R = ForwardKinematics(model, {});
+/// Of all links in the frame of the base; a name that no link has, which is refused later, counts
+/// as the root.
+std::vector<geometry::Pose3> PosesInBase(const RobotModel& model, const std::string& base_link) {
+  std::vector<geometry::Pose3> X_B = ForwardKinematics(model, {});
+  const int base = model.FindLink(base_link).value_or(0);
+  if (base == 0) return X_B;
+  const geometry::Pose3 X_BR = X_B[base].Inverse();
+  for (geometry::Pose3& X : X_B) X = X_BR * X;
+  return X_B;
+}
+
+Wheels WheelsOf(const RobotModel& model, const std::string& base_link) {
+  const std::vector<geometry::Pose3> X_B = PosesInBase(model, base_link);
   Wheels wheels;
   for (std::size_t i = 0; i < model.links.size(); ++i) {
     const auto& joint = model.links[i].joint;
     if (!joint || joint->type != JointType::kContinuous) continue;
-    const Eigen::Vector3d axis = X_R[i].rotation * joint->axis;
+    const Eigen::Vector3d axis = X_B[i].rotation * joint->axis;
     if (std::abs(axis.z()) > kHorizontal) continue;
-    if (const auto swivel = SwivelAbove(model, X_R, static_cast<int>(i))) {
+    if (const auto swivel = SwivelAbove(model, X_B, static_cast<int>(i))) {
       wheels.casters.push_back(joint->name);
-      const auto steered = SteeredBy(*model.links[*swivel].joint, X_R[*swivel]);
+      const auto steered = SteeredBy(*model.links[*swivel].joint, X_B[*swivel]);
       if (steered) wheels.steered.push_back(*steered);
     } else {
-      wheels.fixed.push_back({joint->name, axis, X_R[i].translation});
+      wheels.fixed.push_back({joint->name, axis, X_B[i].translation});
     }
   }
   return wheels;
@@ -107,40 +121,79 @@ std::string FixedNames(const Wheels& wheels) {
 }
 
 double TurningRadius(const SteeredWheel& wheel, const Eigen::Vector3d& along,
-                     const Eigen::Vector3d& p_RA) {
-  const Eigen::Vector3d p_AW = wheel.centre - p_RA;
+                     const Eigen::Vector3d& p_BA) {
+  const Eigen::Vector3d p_AW = wheel.centre - p_BA;
   const double across = std::abs(p_AW.dot(along));
   const double ahead = std::abs(p_AW.dot(Eigen::Vector3d::UnitZ().cross(along)));
   return ahead / std::tan(wheel.largest_angle) + across;
 }
 
+/// The middle between all wheels that turn as this one does and are on the floor, as the lowest is:
+/// what a base of four or six wheels turns about.
+Eigen::Vector3d MiddleOf(const Wheels& wheels, const FixedWheel& one) {
+  std::vector<Eigen::Vector3d> centres;
+  for (const FixedWheel& wheel : wheels.fixed)
+    if (std::abs(wheel.axis.dot(one.axis)) > kParallel) centres.push_back(wheel.centre);
+  double lowest = one.centre.z();
+  for (const Eigen::Vector3d& centre : centres) lowest = std::min(lowest, centre.z());
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  int count = 0;
+  for (const Eigen::Vector3d& centre : centres) {
+    if (centre.z() - lowest > kSameFloor) continue;
+    sum += centre;
+    ++count;
+  }
+  return sum / count;
+}
+
+/// What of its wheels does not fit to how a base drives: it goes along the x axis of base_link, and
+/// turns about that link's origin. Empty where all does.
+std::string MisfitOf(const Eigen::Vector3d& axle, const Eigen::Vector3d& p_BA, double tolerance,
+                     const std::string& base_link) {
+  std::vector<std::string> misfits;
+  const double forward = std::min(1.0, std::abs(axle.normalized().x()));
+  if (forward > kAlongX) {
+    misfits.push_back(fmt::format(
+        "its wheels roll {:.0f} degrees off the x axis of '{}', along which it is driven here "
+        "(REP-103): a profile names a link whose x axis points forward, base_link",
+        std::asin(forward) * 180.0 / M_PI, base_link));
+  }
+  if (p_BA.head<2>().norm() > tolerance) {
+    misfits.push_back(fmt::format(
+        "the axle lies at x {:.2f} m, y {:.2f} m of '{}', which is taken to be over it: a profile "
+        "names one that is, base_link",
+        p_BA.x(), p_BA.y(), base_link));
+  }
+  return base::Join(misfits, "; and ");
+}
+
+std::string WithMisfit(const std::string& why, const std::string& misfit) {
+  return misfit.empty() ? why : why + "; but " + misfit;
+}
+
 /// A car, if some of the steered wheels lie off the axle of the pair.
-std::optional<DriveGuess> GuessCar(const Wheels& wheels, std::size_t first, std::size_t second) {
+std::optional<DriveGuess> GuessCar(const Wheels& wheels, std::size_t first, std::size_t second,
+                                   const std::string& base_link) {
   const Eigen::Vector3d along = wheels.fixed[first].axis.normalized();
-  const Eigen::Vector3d p_RA = 0.5 * (wheels.fixed[first].centre + wheels.fixed[second].centre);
+  const Eigen::Vector3d p_BA = 0.5 * (wheels.fixed[first].centre + wheels.fixed[second].centre);
   const SteeredWheel* widest = nullptr;
   for (const SteeredWheel& wheel : wheels.steered) {
-    const double ahead = (wheel.centre - p_RA).dot(Eigen::Vector3d::UnitZ().cross(along));
+    const double ahead = (wheel.centre - p_BA).dot(Eigen::Vector3d::UnitZ().cross(along));
     if (std::abs(ahead) <= kOnAxle) continue;
-    if (!widest || TurningRadius(wheel, along, p_RA) > TurningRadius(*widest, along, p_RA)) {
+    if (!widest || TurningRadius(wheel, along, p_BA) > TurningRadius(*widest, along, p_BA)) {
       widest = &wheel;
     }
   }
   if (!widest) return std::nullopt;
-  const double radius = TurningRadius(*widest, along, p_RA);
-  std::string why = fmt::format(
+  const double radius = TurningRadius(*widest, along, p_BA);
+  const std::string why = fmt::format(
       "parallel wheels ({}, {}) and steered ones; min_turning_radius={:.2f} m from the {:.2f} rad "
       "{} "
       "{}",
       wheels.fixed[first].joint, wheels.fixed[second].joint, radius, widest->largest_angle,
       widest->has_limits ? "of" : "ASSUMED of", widest->joint);
-  if (p_RA.head<2>().norm() > kOnAxle) {
-    why += fmt::format(
-        "; but the axle lies at x {:.2f} m, y {:.2f} m of the root link, which is taken to be over "
-        "it: a profile names one that is, base_link",
-        p_RA.x(), p_RA.y());
-  }
-  return DriveGuess{Drive::kCarLike, radius, why};
+  const std::string misfit = MisfitOf(along, p_BA, kOnAxle, base_link);
+  return DriveGuess{Drive::kCarLike, radius, WithMisfit(why, misfit), misfit};
 }
 
 const std::map<Drive, std::string>& Names() {
@@ -161,13 +214,15 @@ Drive DriveOf(const std::string& name) {
   return found->first;
 }
 
-DriveGuess GuessDrive(const RobotModel& model) {
-  const Wheels wheels = WheelsOf(model);
+DriveGuess GuessDrive(const RobotModel& model, const std::string& base_link) {
+  const Wheels wheels = WheelsOf(model, base_link);
   if (const auto pair = ParallelPair(wheels)) {
-    if (auto car = GuessCar(wheels, pair->first, pair->second)) return *car;
+    if (auto car = GuessCar(wheels, pair->first, pair->second, base_link)) return *car;
+    const FixedWheel &one = wheels.fixed[pair->first], &other = wheels.fixed[pair->second];
+    const std::string misfit = MisfitOf(one.axis, MiddleOf(wheels, one), kOnAxles, base_link);
     return {Drive::kDifferential, 0.0,
-            fmt::format("parallel wheels: {}, {}", wheels.fixed[pair->first].joint,
-                        wheels.fixed[pair->second].joint)};
+            WithMisfit(fmt::format("parallel wheels: {}, {}", one.joint, other.joint), misfit),
+            misfit};
   }
   if (wheels.fixed.size() >= 3) {
     return {Drive::kOmnidirectional, 0.0,

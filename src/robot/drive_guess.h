@@ -13,7 +13,8 @@ Drive DriveOf(const std::string& name);
 struct DriveGuess {
   Drive drive{Drive::kDifferential};
   double min_turning_radius{0.0};  ///< [m] > 0 where the drive is kCarLike
-  std::string why;                 ///< "two parallel wheels: left_joint, right_joint"
+  std::string why;                 ///< "two parallel wheels: left_joint, right_joint; but ..."
+  std::string misfit{};            ///< what stands behind that "but": see GuessDrive
 };
 
 /// How a robot drives, from its wheels: continuous joints about a horizontal axis. Wheels that turn
@@ -23,9 +24,13 @@ struct DriveGuess {
 /// two are parallel, drive anywhere; all else is taken to drive differentially, which a robot that
 /// can do more, a car aside, can do as well.
 ///
+/// Where the axle of parallel wheels is not below the origin of base_link, about which a base turns
+/// here, or does not lie across its x axis, along which it drives, `misfit` says so.
+///
 /// A car's least turning radius is that of the steered wheel which allows least: its distance from
 /// the axle over the tangent of its largest angle, the smaller one of left and right (0.5 rad for a
 /// joint that has no limits), and its distance from the middle, as the inner wheel is turned most.
-DriveGuess GuessDrive(const RobotModel& model);
+/// @param base_link  an unknown one counts as the root.
+DriveGuess GuessDrive(const RobotModel& model, const std::string& base_link);
 
 }  // namespace hires::robot

@@ -11,6 +11,7 @@
 #include "hires/base/error.h"
 #include "hires/base/log.h"
 #include "hires/base/text.h"
+#include "robot/limit_stop.h"
 #include "robot/model_hash.h"
 #include "robot/quiet_urdf_parser.h"
 #include "robot/urdf/base_root.h"
@@ -24,8 +25,6 @@ namespace hires::robot {
 namespace {
 
 using geometry::Pose3;
-
-constexpr double kLimitSlack = 1e-6;  // [rad] or [m]
 
 [[noreturn]] void Fail(const RobotModel& model, const std::string& what) {
   throw base::ConfigError(fmt::format("robot '{}': {}", model.name, what));
@@ -44,8 +43,7 @@ void CheckWithinLimits(const RobotModel& model, const Joint& joint, double posit
   if (!IsLimited(joint)) return;
   const double lower = joint.limits->lower, upper = joint.limits->upper;
   if (position >= lower - kLimitSlack && position <= upper + kLimitSlack) return;
-  Fail(model, fmt::format("joint '{}'{} is at {}, wanted between {} and {}", joint.name,
-                          joint.mimics.empty() ? "" : " (follows '" + joint.mimics + "')", position,
+  Fail(model, fmt::format("joint '{}' is at {}, wanted between {} and {}", joint.name, position,
                           lower, upper));
 }
 
@@ -102,7 +100,9 @@ double PositionOf(const RobotModel& model, std::size_t link, const std::vector<d
   const Joint& joint = *model.links[link].joint;
   if (joint.type == JointType::kFixed) return 0.0;
   if (joint.mimics.empty()) return leading[link];
-  return joint.mimic_multiplier * leading[LeaderOf(model, link)] + joint.mimic_offset;
+  const double wanted =
+      joint.mimic_multiplier * leading[LeaderOf(model, link)] + joint.mimic_offset;
+  return IsLimited(joint) ? StoppedAt(joint.limits->lower, joint.limits->upper, wanted) : wanted;
 }
 
 /// The child's frame C in the joint's frame J.
@@ -147,6 +147,11 @@ std::vector<std::string> RobotModel::JointNames() const {
     }
   }
   return names;
+}
+
+bool HasShapes(const RobotModel& model) {
+  return std::any_of(model.links.begin(), model.links.end(),
+                     [](const Link& link) { return !link.collisions.empty(); });
 }
 
 const Joint* FindJoint(const RobotModel& model, const std::string& name) {

@@ -16,6 +16,7 @@
 #include "robot/base_height.h"
 #include "robot/drive_guess.h"
 #include "robot/extra_sensors_reader.h"
+#include "robot/profile/bare_robot.h"
 #include "robot/tray_place.h"
 #include "robot/upper_body_reader.h"
 #include "robot/urdf/read_urdf.h"
@@ -145,13 +146,23 @@ bool SpanAnArea(const geometry::Polygon& corners) {
   return false;
 }
 
-/// Corners in either direction of turning; an empty list stands for "from the shapes".
-geometry::Polygon ReadFootprint(ParamReader* in) {
+/// As `{x: .., y: ..}`, or in pairs as move_base's parameter of the same name has them.
+geometry::Polygon ReadCorners(ParamReader* in) {
   geometry::Polygon corners;
+  if (const auto pairs = in->FindPairs("footprint", Between(-100.0, 100.0))) {
+    for (const auto& [x, y] : *pairs) corners.emplace_back(x, y);
+    return corners;
+  }
   for (ParamReader& corner : in->SubList("footprint")) {
     const double x = corner.Get("x", Between(-100.0, 100.0));
     corners.emplace_back(x, corner.Get("y", Between(-100.0, 100.0)));
   }
+  return corners;
+}
+
+/// Corners in either direction of turning; an empty list stands for "from the shapes".
+geometry::Polygon ReadFootprint(ParamReader* in) {
+  const geometry::Polygon corners = ReadCorners(in);
   if (corners.empty()) return corners;
   if (!SpanAnArea(corners)) {
     in->Fail("footprint", "wanted at least three corners that do not lie on one line");
@@ -213,6 +224,11 @@ RobotProfile ReadProfile(ParamReader* in) {
   if (in->Has("object_on_tray")) profile.X_TO = ReadPose(in->Sub("object_on_tray"));
   if (in->Has("laser_link")) profile.laser_link = in->GetString("laser_link");
   if (in->Has("footprint")) profile.footprint = ReadFootprint(in);
+  if (in->Has("robot_radius")) {
+    in->Fail("robot_radius",
+             "wanted `footprint` in its place, the corners from above: a round robot of 0.2 m is "
+             "in [[0.2, 0.2], [-0.2, 0.2], [-0.2, -0.2], [0.2, -0.2]]");
+  }
   if (in->Has("footprint_padding")) {
     profile.footprint_padding = in->Get("footprint_padding", Between(0.0, 1.0));
   }
@@ -360,10 +376,10 @@ void PlaceOnNamedTray(const ParamReader& in, const RobotModel& model, RobotProfi
   PutOnTray(model, profile);
 }
 
-void SetGuessedDrive(const RobotModel& model, BaseControllerParams* params) {
-  const DriveGuess guess = GuessDrive(model);
-  params->drive = guess.drive;
-  params->min_turning_radius = guess.min_turning_radius;
+void SetGuessedDrive(const RobotModel& model, RobotProfile* profile) {
+  const DriveGuess guess = GuessDrive(model, profile->base_link);
+  profile->base_controller.drive = guess.drive;
+  profile->base_controller.min_turning_radius = guess.min_turning_radius;
 }
 
 /// Answers carry this among their caveats; the line is for whoever follows a node's log.
@@ -382,7 +398,7 @@ void FillFromModel(ParamReader in, Robot* robot) {
   if (!in.Has("base_link")) profile.base_link = robot->model.links.front().name;
   if (!in.Has("tray_link")) profile.tray_link = GuessTray(robot->model);
   if (!in.Has("base_controller") || !in.Sub("base_controller").Has("drive")) {
-    SetGuessedDrive(robot->model, &profile.base_controller);
+    SetGuessedDrive(robot->model, &profile);
   }
 }
 
@@ -402,6 +418,13 @@ std::vector<Eigen::Vector2d> CornersOf(const RobotModel& model, const std::strin
     }
   }
   return points;
+}
+
+/// Empty where no shape lies where footprints are made of shapes.
+geometry::Polygon OutlineIfAny(const RobotModel& model, const std::string& base_link,
+                               const JointPositions& joints) {
+  auto points = CornersOf(model, base_link, joints, [](int /*link*/) { return true; });
+  return points.size() >= 3 ? geometry::ConvexHull(std::move(points)) : geometry::Polygon();
 }
 
 /// Joints in the driving posture. Where that fails it may be a matter of units.
@@ -431,6 +454,31 @@ void SayDoubts(const std::vector<std::string>& doubts, const std::string& urdf,
                         "{:.4g} m; lengths in a URDF and in a profile are metres",
                         urdf, size.x(), size.y(), 1e-3 * size.x(), 1e-3 * size.y(), 1e-2 * size.x(),
                         1e-2 * size.y()));
+}
+
+/// What a bare URDF says, but for a footprint.
+Robot WithoutFootprint(const UrdfFile& file, UrdfReading* reading) {
+  Robot robot;
+  robot.model = std::move(reading->model);
+  RobotProfile& profile = robot.profile;
+  profile.urdf = TextOf({std::filesystem::path(file.path).filename().string(), file.arguments});
+  profile.base_link = robot.model.links.front().name;
+  profile.tray_link = GuessTray(robot.model);
+  if (!profile.tray_link.empty()) PutOnTray(robot.model, &profile);
+  SetGuessedDrive(robot.model, &profile);
+  StandOnFloor(&robot);
+  return robot;
+}
+
+/// What rests on the footprint, too.
+void CompleteBare(const UrdfReading& reading, const std::string& path, const std::string& xml,
+                  Robot* robot) {
+  SayDoubts(reading.doubts, path, *robot);
+  robot->assumed = AssumptionsOf(
+      *robot, [](const std::string& /*key*/) { return false; }, xml);
+  SayBase(reading.base_note, robot);
+  SayAssumed(*robot);
+  robot->profile.hash = HashOf(robot->profile);
 }
 
 /// Whether a profile says something of its own, by key or "key.key".
@@ -467,12 +515,12 @@ std::optional<double> LaserHeight(const Robot& robot) {
 
 geometry::Polygon OutlineOf(const RobotModel& model, const std::string& base_link,
                             const JointPositions& joints) {
-  auto points = CornersOf(model, base_link, joints, [](int /*link*/) { return true; });
-  if (points.size() >= 3) return geometry::ConvexHull(std::move(points));
+  geometry::Polygon outline = OutlineIfAny(model, base_link, joints);
+  if (!outline.empty()) return outline;
   throw base::ConfigError(
       fmt::format("robot '{}': no collision shape lies 0 to {} m above link '{}', so there is no "
-                  "footprint; add "
-                  "<collision> shapes, or give 'footprint' in a profile",
+                  "footprint; add <collision> shapes, or give 'footprint' in a profile, which "
+                  "`hires new robot` begins",
                   model.name, kFootprintTop, base_link));
 }
 
@@ -521,22 +569,18 @@ Robot LoadRobotFromUrdf(const std::string& urdf_path) {
   const UrdfFile file = SplitArguments(urdf_path);
   const std::string xml = ReadUrdfFile(file);
   UrdfReading reading = ReadUrdf(xml, file.path);
-  Robot robot;
-  robot.model = std::move(reading.model);
-  RobotProfile& profile = robot.profile;
-  profile.urdf = TextOf({std::filesystem::path(file.path).filename().string(), file.arguments});
-  profile.base_link = robot.model.links.front().name;
-  profile.tray_link = GuessTray(robot.model);
-  if (!profile.tray_link.empty()) PutOnTray(robot.model, &profile);
-  SetGuessedDrive(robot.model, &profile.base_controller);
-  StandOnFloor(&robot);
+  Robot robot = WithoutFootprint(file, &reading);
   SetFootprint(reading.doubts, &robot);
-  SayDoubts(reading.doubts, file.path, robot);
-  robot.assumed = AssumptionsOf(
-      robot, [](const std::string& /*key*/) { return false; }, xml);
-  SayBase(reading.base_note, &robot);
-  SayAssumed(robot);
-  profile.hash = HashOf(profile);
+  CompleteBare(reading, file.path, xml, &robot);
+  return robot;
+}
+
+Robot LoadRobotToDescribe(const UrdfFile& file, const std::string& xml) {
+  UrdfReading reading = ReadUrdf(xml, file.path);
+  Robot robot = WithoutFootprint(file, &reading);
+  robot.profile.footprint =
+      OutlineIfAny(robot.model, robot.profile.base_link, robot.profile.joints);
+  if (!robot.profile.footprint.empty()) CompleteBare(reading, file.path, xml, &robot);
   return robot;
 }
 

@@ -10,12 +10,15 @@
 #include <memory>
 #include <optional>
 #include <queue>
+#include <set>
 
 #include "geometry/mesh_units.h"
 #include "hires/base/error.h"
 #include "hires/base/text.h"
 #include "hires/geometry/mesh_reader.h"
+#include "robot/limit_stop.h"
 #include "robot/mesh_path.h"
+#include "robot/urdf/told.h"
 
 namespace hires::robot {
 namespace {
@@ -49,7 +52,9 @@ class ModelBuilder {
     model_.name = urdf_.getName();
     ReadMeshes();
     AddTree();
-    CheckMimics();
+    ResolveMimics();
+    outline_.endless_friction.Tell(where_, "endless_friction",
+                                   "a friction that is infinite or negative is taken as 1000");
     return {std::move(model_), std::move(doubts_)};
   }
 
@@ -58,9 +63,7 @@ class ModelBuilder {
     problems_.Add(outline_.link_lines.at(link), fmt::format("link '{}': {}", link, what));
   }
   void TellJoint(const std::string& joint, const std::string& what) {
-    const auto line = outline_.joint_lines.find(joint);  // what joins loose links is in no line
-    problems_.Add(line == outline_.joint_lines.end() ? 0 : line->second,
-                  fmt::format("joint '{}': {}", joint, what));
+    problems_.Add(LineOf(joint), fmt::format("joint '{}': {}", joint, what));
   }
 
   /// Breadth first, children by name: the order does not depend on the file's.
@@ -104,8 +107,11 @@ class ModelBuilder {
     const std::string far = WhyBadPose(joint.X_PJ);
     if (!far.empty()) TellJoint(joint.name, "its origin " + far);
     if (joint.type == JointType::kFixed) return joint;
-    joint.axis = ToAxis(source);
-    if (source.limits) joint.limits = ToLimits(source);
+    joint.axis = ToVector(source.axis).normalized();
+    if (source.limits) {
+      const urdf::JointLimits& in = *source.limits;
+      joint.limits = JointLimits{in.lower, in.upper, in.velocity, in.effort};
+    }
     if (source.mimic) {
       joint.mimics = source.mimic->joint_name;
       joint.mimic_multiplier = source.mimic->multiplier;
@@ -130,30 +136,6 @@ class ModelBuilder {
                   "make it fixed, or revolute, continuous or prismatic");
         return JointType::kFixed;
     }
-  }
-
-  Eigen::Vector3d ToAxis(const urdf::Joint& source) {
-    const Eigen::Vector3d axis = ToVector(source.axis);
-    const double length = axis.norm();
-    if (length > 1e-6 && std::isfinite(length)) return axis / length;
-    TellJoint(source.name, fmt::format("its axis is ({}, {}, {}), wanted a direction such as 0 0 1",
-                                       axis.x(), axis.y(), axis.z()));
-    return Eigen::Vector3d::UnitZ();
-  }
-
-  JointLimits ToLimits(const urdf::Joint& source) {
-    const urdf::JointLimits& in = *source.limits;
-    if (!(in.lower <= in.upper)) {
-      TellJoint(source.name,
-                fmt::format("its lower limit {} is above its upper limit {}; swap them", in.lower,
-                            in.upper));
-    }
-    if (!(in.velocity >= 0.0) || !(in.effort >= 0.0)) {
-      TellJoint(source.name, fmt::format("its limits are velocity {} and effort {}, wanted numbers "
-                                         "of at least 0",
-                                         in.velocity, in.effort));
-    }
-    return {in.lower, in.upper, in.velocity, in.effort};
   }
 
   static std::string WhyBadPose(const Pose3& pose) {
@@ -269,27 +251,95 @@ class ModelBuilder {
     by_uri = by_path;
   }
 
-  void CheckMimics() {
-    std::map<std::string, const Joint*> joints;
-    for (const Link& link : model_.links) {
-      if (link.joint) joints[link.joint->name] = &*link.joint;
+  /// What a joint follows in the end.
+  struct Following {
+    const Joint* leader{nullptr};  // null: nobody that moves
+    double multiplier{1.0}, offset{0.0};
+  };
+
+  /// Along a chain of joints that follow each other; nothing where it leads to a joint that is not
+  /// there. One that comes back to where it was stands at 0.
+  static std::optional<Following> FollowedBy(const Joint& joint,
+                                             const std::map<std::string, Joint>& joints) {
+    Following following{nullptr, joint.mimic_multiplier, joint.mimic_offset};
+    std::set<std::string> met{joint.name};
+    for (std::string at = joint.mimics; met.insert(at).second;) {
+      const auto next = joints.find(at);
+      if (next == joints.end()) return std::nullopt;
+      if (next->second.type == JointType::kFixed) return following;
+      if (next->second.mimics.empty()) {
+        following.leader = &next->second;
+        return following;
+      }
+      following.offset += following.multiplier * next->second.mimic_offset;
+      following.multiplier *= next->second.mimic_multiplier;
+      at = next->second.mimics;
     }
+    return Following{};
+  }
+
+  static double Stopped(const Joint& joint, double position) {
+    if (!joint.limits || joint.type == JointType::kContinuous) return position;
+    return StoppedAt(joint.limits->lower, joint.limits->upper, position);
+  }
+
+  /// Fixes a joint where it stands.
+  static void Hold(double position, Joint* joint) {
+    const Pose3 X_JC = joint->type == JointType::kPrismatic
+                           ? Pose3{position * joint->axis, Eigen::Quaterniond::Identity()}
+                           : Pose3{Eigen::Vector3d::Zero(),
+                                   Eigen::Quaterniond(Eigen::AngleAxisd(position, joint->axis))};
+    Joint fixed;
+    fixed.name = joint->name;
+    fixed.parent = joint->parent;
+    fixed.X_PJ = position == 0.0 ? joint->X_PJ : joint->X_PJ * X_JC;
+    *joint = fixed;
+  }
+
+  /// Has each joint that follows another follow one that leads, or stand where it is put.
+  void ResolveMimics() {
+    std::map<std::string, Joint> joints;
+    for (const Link& link : model_.links)
+      if (link.joint) joints.emplace(link.joint->name, *link.joint);
     const std::vector<std::string> leaders = model_.JointNames();
-    for (const auto& [name, joint] : joints) {
-      if (joint->mimics.empty()) continue;
-      if (joints.count(joint->mimics) == 0) {
-        if (outline_.joint_lines.count(joint->mimics) > 0) continue;  // left out as wrong itself
+    Told held, stopped;
+    for (auto& [name, before] : joints) {
+      if (before.mimics.empty()) continue;
+      if (joints.count(before.mimics) == 0) {
+        if (outline_.joint_lines.count(before.mimics) > 0) continue;  // left out as wrong itself
         TellJoint(name, "it mimics a joint that is not there: " +
-                            base::UnknownName("joint", joint->mimics, leaders));
+                            base::UnknownName("joint", before.mimics, leaders));
         continue;
       }
-      const Joint& leader = *joints.at(joint->mimics);
-      if (leader.type == JointType::kFixed || !leader.mimics.empty()) {
-        TellJoint(name, fmt::format("it mimics '{}', which is fixed or mimics another; name the "
-                                    "joint that leads",
-                                    joint->mimics));
+      const auto following = FollowedBy(before, joints);
+      if (!following) continue;  // the one before the last of the chain is told
+      Joint& joint = *model_.links[*FindLinkOf(model_, name)].joint;
+      const double led = following->leader ? RestOf(*following->leader) : 0.0;
+      const double wanted = following->multiplier * led + following->offset;
+      if (Stopped(joint, wanted) != wanted)
+        stopped.Add(LineOf(name), name, fmt::format("it would be at {}", wanted));
+      if (!following->leader) {
+        held.Add(LineOf(name), name, fmt::format("follows '{}'", before.mimics));
+        Hold(Stopped(joint, wanted), &joint);
+        continue;
       }
+      joint.mimics = following->leader->name;
+      joint.mimic_multiplier = following->multiplier;
+      joint.mimic_offset = following->offset;
     }
+    held.Tell(where_, "follow_nothing_that_moves",
+              "a joint that follows a fixed one, or itself, does not move");
+    stopped.Tell(where_, "stopped_at_limits", "a joint that follows another stops at its limits");
+  }
+
+  static double RestOf(const Joint& joint) {
+    if (!joint.limits || joint.type == JointType::kContinuous) return 0.0;
+    return std::clamp(0.0, joint.limits->lower, joint.limits->upper);
+  }
+
+  int LineOf(const std::string& joint) const {
+    const auto line = outline_.joint_lines.find(joint);  // what joins loose links is in no line
+    return line == outline_.joint_lines.end() ? 0 : line->second;
   }
 
   using MeshPtr = std::shared_ptr<const geometry::TriangleMesh>;

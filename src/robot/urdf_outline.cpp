@@ -202,7 +202,12 @@ class OutlineReader {
     for (const auto& [link, mu] : read.of_links) {
       if (outline_.link_lines.count(link) > 0) outline_.friction[link] = mu;
     }
-    read.wrong.insert(read.wrong.end(), read.endless.begin(), read.endless.end());
+    for (const base::UrdfFriction::Place& place : read.endless) {
+      if (outline_.link_lines.count(place.link) == 0 || !endless_.insert(place.link).second)
+        continue;
+      outline_.endless_friction.Add(place.line, place.link,
+                                    fmt::format("<{}> is infinite or negative", place.element));
+    }
     for (const base::UrdfFriction::Place& place : read.wrong) {
       if (outline_.link_lines.count(place.link) == 0) continue;
       problems_.Add(place.line, fmt::format("<{}> holds no friction coefficient; wanted a finite "
@@ -221,6 +226,7 @@ class OutlineReader {
   const XMLElement* robot_{nullptr};
   UrdfOutline outline_;
   std::map<std::string, Carrier> carriers_;  // by child
+  std::set<std::string> endless_;            // links whose friction is told
   std::set<std::string> loose_;              // children of useless joints
   std::size_t num_lost_{0};                  // useless joints whose child is not known
 };

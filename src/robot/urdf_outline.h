@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "robot/urdf/told.h"
 #include "robot/urdf/urdf_problems.h"
 
 namespace hires::robot {
@@ -14,6 +15,8 @@ struct UrdfOutline {
   std::map<std::string, int> link_lines;   ///< link name -> line in the file
   std::map<std::string, int> joint_lines;  ///< joint name -> line in the file
   std::map<std::string, double> friction;  ///< by link: see base::ReadUrdfFriction
+
+  Told endless_friction;  ///< links with one that is infinite or negative: 1000
 
   // What is to be left out or put in for the rest to be read; empty if nothing is wrong.
   std::set<int> useless_links, useless_joints;  ///< the how manieth of its kind, from 0

@@ -9,9 +9,11 @@
 
 #include "hires/base/error.h"
 #include "hires/base/log.h"
+#include "hires/base/short_text.h"
 #include "hires/base/text.h"
 #include "hires/localisation/laser_mount.h"
 #include "hires/localisation/scan_outcome.h"
+#include "localisation/laser_maximum.h"
 
 namespace hires::sensing {
 namespace {
@@ -250,10 +252,11 @@ void DriveBuilder::RequireOdometry() const {
   };
   throw base::ConfigError(fmt::format(
       "{}: has no odometry: no topic of nav_msgs/Odometry is used, and its transforms do not tell "
-      "how base {} moves in {}; record /tf or the odometry's topic too, or name the frames with "
+      "how base {} moves in {} ({}); record /tf or the odometry's topic too, or name the frames "
+      "with "
       "--odometry-frame and --base-frame{}",
       recording_, named(base_frame_, kBaseFrames), named(odometry_frame_, kOdometryFrames),
-      LeftOutText()));
+      FramesText(), LeftOutText()));
 }
 
 void DriveBuilder::LeaveOutBeyondOdometry() {
@@ -280,9 +283,10 @@ void DriveBuilder::RequireScans() const {
     const std::string place = fmt::format("where the laser's frame '{}' is in the base '{}'",
                                           unplaced_frame_, base_frame_);
     const std::string what =
-        base_frame_.empty() ? "its odometry has no child_frame_id (--base-frame names it), so it "
-                              "is not known where the laser is in the base"
-                            : "its /tf and /tf_static do not tell " + place;
+        base_frame_.empty()
+            ? "its odometry has no child_frame_id (--base-frame names it), so it "
+              "is not known where the laser is in the base"
+            : fmt::format("its /tf and /tf_static do not tell {} ({})", place, FramesText());
     throw base::ConfigError(
         fmt::format("{}: {}; record both topics too, or say it with --laser \"x y yaw\" [m, m, "
                     "rad]{}",
@@ -290,6 +294,14 @@ void DriveBuilder::RequireScans() const {
   }
   throw base::ConfigError(
       fmt::format("{}: none of its {} scans can be used{}", recording_, num_scans_, LeftOutText()));
+}
+
+/// "they tell of base_link, odom"
+std::string DriveBuilder::FramesText() const {
+  std::vector<std::string> names = tree_.Names();
+  std::sort(names.begin(), names.end());
+  return names.empty() ? "they tell of no frame"
+                       : "they tell of " + base::Shortened(base::Join(names, ", "), 500);
 }
 
 /// "; left out: 3 scans whose header.stamp is zero", or nothing.
@@ -309,11 +321,14 @@ RobotLog DriveBuilder::Take() {
   RequireOdometry();
   LeaveOutBeyondOdometry();
   RequireScans();
+  const double said = log_.scans.front().reading.range_max;
+  const std::string maximum = localisation::TakeLaserMaximum(&log_);
   const auto warn = [&](const std::string& what) {
     base::Log(base::LogLevel::kWarn, recording_ + ": " + what);
   };
   if (num_late_ > 0) warn(fmt::format("{} readings came late; put in order", num_late_));
   for (const auto& [what, count] : left_out_) warn(fmt::format("left out {} {}", count, what));
+  if (!maximum.empty()) warn(fmt::format("{}; range_max of the scans says {:g}", maximum, said));
   return std::move(log_);
 }
 

@@ -7,6 +7,7 @@
 #include "hires/base/check.h"
 #include "hires/base/error.h"
 #include "hires/base/text.h"
+#include "robot/limit_stop.h"
 
 namespace hires::simulation {
 
@@ -27,6 +28,9 @@ LinkBodies::LinkBodies(const robot::Robot& robot, std::vector<std::string> movin
       mounts_.push_back({parent, X_RBody[parent].Inverse() * X_R[joint->parent] * joint->X_PJ,
                          joint->axis, joint->type == robot::JointType::kPrismatic, leader,
                          joint->mimic_multiplier, joint->mimic_offset});
+      const bool stops =
+          !joint->mimics.empty() && joint->limits && joint->type != robot::JointType::kContinuous;
+      if (stops) mounts_.back().stops = joint->limits;
       bodies_.push_back({links_[i], {}, {}});
       X_RBody.push_back(X_R[i]);
     }
@@ -71,7 +75,8 @@ const Pose3& LinkBodies::InBody(const std::string& link) const {
 
 Pose3 LinkBodies::PoseOf(const Mount& mount, const std::vector<double>& positions,
                          const std::vector<Pose3>& X_B) const {
-  const double q = mount.multiplier * positions[mount.moving] + mount.offset;
+  double q = mount.multiplier * positions[mount.moving] + mount.offset;
+  if (mount.stops) q = robot::StoppedAt(mount.stops->lower, mount.stops->upper, q);
   Pose3 X_JBody;
   if (mount.is_prismatic) {
     X_JBody.translation = q * mount.axis;

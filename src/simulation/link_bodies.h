@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -29,7 +30,7 @@ class LinkBodies {
   const std::vector<std::string>& moving() const { return moving_; }
 
   /// Poses of all bodies in the base frame, in their order.
-  /// @param positions  of the moving joints, in their order; limits are not looked at.
+  /// @param positions  of the moving joints, in their order; their limits are not looked at.
   void Place(const std::vector<double>& positions, std::vector<geometry::Pose3>* X_B) const;
 
   /// The same where `X_B` was placed for the positions `before`: only what moved since is touched.
@@ -49,6 +50,7 @@ class LinkBodies {
     bool is_prismatic{false};
     int moving{0};  // index of the joint that it follows
     double multiplier{1.0}, offset{0.0};
+    std::optional<robot::JointLimits> stops{};  // of a joint that follows another
   };
   void AddShapes(const robot::RobotModel& model, const robot::JointPositions& posture);
   int LinkIndex(const std::string& link) const;

@@ -10,6 +10,7 @@
 #include <set>
 #include <sstream>
 
+#include "base/files/model_folders.h"
 #include "hires/base/error.h"
 #include "hires/base/log.h"
 #include "hires/base/text.h"
@@ -395,7 +396,7 @@ ObjectModel LoadSdfObject(const std::string& path, const ResourceFinder& finder,
 ObjectModel LoadObjectOf(const std::string& path, LoadNotes* notes) {
   const std::filesystem::path folder = std::filesystem::absolute(path).parent_path();
   // Models stand beside each other: model://other is found from models/this/model.sdf.
-  const ResourceFinder finder(ModelFoldersFor(path, {folder.parent_path().string()}));
+  const ResourceFinder finder(base::ModelFoldersFor(path, {folder.parent_path().string()}));
   const std::string ending = base::ToLower(std::filesystem::path(path).extension().string());
   if (ending == ".urdf") return LoadUrdfObject(path, finder, notes);
   if (ending == ".sdf") return LoadSdfObject(path, finder, notes);
@@ -416,7 +417,7 @@ World LoadWorldWithAreas(const std::string& sdf_path, const std::vector<NamedAre
 
 World LoadWorldInParts(const std::string& sdf_path, const std::vector<std::string>& model_path,
                        std::size_t models_per_part, const std::vector<NamedArea>& areas) {
-  const ResourceFinder finder(ModelFoldersFor(sdf_path, model_path));
+  const ResourceFinder finder(base::ModelFoldersFor(sdf_path, model_path));
   LoadNotes notes;
   const SdfFiles files = ReadWorldFiles(sdf_path, finder, &notes);
   WorldBuilder builder(&finder, files.at(sdf_path).world_joints, &notes);

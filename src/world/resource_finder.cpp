@@ -7,6 +7,7 @@
 #include <cstdlib>
 #include <filesystem>
 
+#include "base/files/model_folders.h"
 #include "base/files/nearest_file.h"
 #include "hires/base/error.h"
 #include "hires/base/text.h"
@@ -31,7 +32,7 @@ bool Climbs(const std::string& path) {
 
 void AppendFolders(const std::vector<std::string>& candidates, std::vector<std::string>* folders) {
   for (const std::string& candidate : candidates) {
-    if (candidate.empty() || !IsFolder(candidate)) continue;
+    if (candidate.empty() || !base::IsFolder(candidate)) continue;
     const std::string folder = fs::absolute(candidate).lexically_normal().string();
     if (std::find(folders->begin(), folders->end(), folder) == folders->end()) {
       folders->push_back(folder);
@@ -123,7 +124,7 @@ std::string ResourceFinder::NotThere(const std::string& uri, const std::string& 
   const std::string folder_of_name = name.substr(0, name.find('/'));
   for (const std::string& folder : folders) {
     const std::string path = (fs::path(folder) / name).string();
-    if (name.size() > folder_of_name.size() && IsFolder(fs::path(folder) / folder_of_name)) {
+    if (name.size() > folder_of_name.size() && base::IsFolder(fs::path(folder) / folder_of_name)) {
       return fmt::format("{}: '{}' is not there; looked for {}{}", where, uri, path,
                          NearestFile(path));
     }
@@ -131,7 +132,7 @@ std::string ResourceFinder::NotThere(const std::string& uri, const std::string& 
   return fmt::format(
       "{}: '{}' is not there; looked in {}; add its folder to the model path or to "
       "one of {}{}",
-      where, uri, folders.empty() ? "no folder" : base::Join(folders, ", "), ModelVariables(),
+      where, uri, folders.empty() ? "no folder" : base::Join(folders, ", "), base::ModelVariables(),
       Guess(folder_of_name, [&] { return NearestName(folders, folder_of_name); }));
 }
 
@@ -146,8 +147,8 @@ std::string ResourceFinder::FindIn(const std::vector<std::string>& folders, cons
     // ROS_PACKAGE_PATH may name a package itself or the folder that holds it.
     const fs::path inside = fs::path(folder) / name;
     const fs::path beside = fs::path(folder).parent_path() / name;
-    if (Exists(inside)) return inside.string();
-    if (StartsWith(uri, "package://") && IsBelow(beside, folder) && Exists(beside)) {
+    if (base::Exists(inside)) return inside.string();
+    if (StartsWith(uri, "package://") && IsBelow(beside, folder) && base::Exists(beside)) {
       return beside.string();
     }
   }
@@ -168,7 +169,7 @@ std::string ResourceFinder::FindOfFuel(const std::string& uri, const std::string
         "`gz fuel download -u {}`",
         NotThere(uri, name.model, where, model_folders_), name.model, WithoutBlanks(uri)));
   }
-  if (name.inside.empty() || Exists(fs::path(folder) / name.inside))
+  if (name.inside.empty() || base::Exists(fs::path(folder) / name.inside))
     return name.inside.empty() ? folder : (fs::path(folder) / name.inside).string();
   throw base::ConfigError(fmt::format("{}: '{}': {} has no file {}{}", where, uri, folder,
                                       name.inside,
@@ -197,7 +198,7 @@ std::string ResourceFinder::FindByScheme(const std::string& uri, const std::stri
   if (StartsWith(uri, "package://")) return FindInPackages(uri, near, where);
   if (StartsWith(uri, "https://") || StartsWith(uri, "http://")) return FindOfFuel(uri, where);
   if (StartsWith(uri, "file:///")) {
-    if (Exists(uri.substr(7))) return uri.substr(7);
+    if (base::Exists(uri.substr(7))) return uri.substr(7);
     throw base::ConfigError(fmt::format("{}: '{}' is not there; check the path{}", where, uri,
                                         NearestFile(uri.substr(7))));
   }
@@ -221,9 +222,10 @@ std::string ResourceFinder::FindBeside(const std::string& uri, const std::string
         "add its folder to the model path",
         where, uri));
   }
-  if (Exists(path)) return path.string();
+  if (base::Exists(path)) return path.string();
   for (const std::string& root : model_folders_) {
-    if (!Climbs(name) && Exists(fs::path(root) / name)) return (fs::path(root) / name).string();
+    if (!Climbs(name) && base::Exists(fs::path(root) / name))
+      return (fs::path(root) / name).string();
   }
   throw base::ConfigError(fmt::format("{}: '{}' is not there; looked for {}{}", where, uri,
                                       path.string(), NearestFile(path.string())));
@@ -240,7 +242,7 @@ std::string ResourceFinder::Find(const std::string& uri, const std::string& wher
 std::string ResourceFinder::FindModel(const std::string& uri, const std::string& where,
                                       const std::string& from_file) const {
   const std::string path = Find(uri, where, from_file, !from_file.empty());
-  return IsFolder(path) ? ModelFileIn(path, uri, where) : path;
+  return base::IsFolder(path) ? ModelFileIn(path, uri, where) : path;
 }
 
 std::string ResourceFinder::FindMesh(const std::string& uri, const std::string& from_file,

@@ -1,11 +1,11 @@
-#include "hires/base/averages.h"
+#include "base/averages.h"
 
 #include <gtest/gtest.h>
 
 #include <stdexcept>
 #include <vector>
 
-namespace hires::base {
+namespace hires::base::averages_test {
 namespace {
 
 TEST(AveragesTest, TheMeanOfNoValuesIsZero) {
@@ -24,4 +24,4 @@ TEST(AveragesTest, NoValuesHaveNoMedian) {
 }
 
 }  // namespace
-}  // namespace hires::base
+}  // namespace hires::base::averages_test

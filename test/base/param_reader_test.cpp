@@ -165,6 +165,26 @@ TEST(ParamReaderTest, AListOfNumbersMustHaveItsSizeAndOnlyFiniteNumbers) {
             "a.yaml: p is a list, item 2 is a list, wanted a finite number; line 1");
 }
 
+TEST(ParamReaderTest, PairsAreAListOrTextOfOne) {
+  const auto pairs_of = [](const std::string& yaml) {
+    return Read(yaml).FindPairs("p", Between(-2.0, 2.0));
+  };
+  const std::vector<std::pair<double, double>> two{{1.0, -2.0}, {0.5, 2.0}};
+  for (const char* yaml :
+       {"p: [[1, -2], [0.5, 2]]", "p: '[[1, -2], [0.5, 2]]'", "p:\n- [1, -2]\n- - 0.5\n  - 2\n"}) {
+    EXPECT_EQ(pairs_of(yaml), two) << yaml;
+  }
+  for (const char* yaml : {"p: []", "p: '[]'"}) EXPECT_EQ(pairs_of(yaml)->size(), 0u) << yaml;
+  for (const char* yaml : {"p: 7", "p: text", "p: '[{'", "p: {x: 1}", "p: [{x: 1}]", "p: [1, 2]"})
+    EXPECT_FALSE(pairs_of(yaml).has_value()) << yaml;
+  for (const char* yaml : {"p: [[1, 2], [1]]", "p: [[1, 2], [1, 3]]", "p: [[1, 2], [1, .nan]]",
+                           "p: [[1, 2], 1]", "p: [[1, 2], {x: 1}]", "p: [[1, 2], [1, [2]]]"}) {
+    EXPECT_THAT(ErrorOf([&] { pairs_of(yaml); }),
+                ::testing::HasSubstr("wanted a pair [x, y] of numbers between -2 and 2; line 1"))
+        << yaml;
+  }
+}
+
 TEST(ParamReaderTest, AListOfTextHoldsOnlyText) {
   EXPECT_EQ(ErrorOf([] { Read("s: [a, [b]]").GetStrings("s"); }),
             "a.yaml: s is a list, wanted a list of text; line 1");

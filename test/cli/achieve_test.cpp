@@ -235,6 +235,37 @@ TEST_F(AchieveVerbTest, AnAreaThatNothingKnowsIsRefusedBeforeAnythingBegins) {
   EXPECT_EQ(deliver("soup1", "atLongTable").code, 0);
 }
 
+TEST_F(AchieveVerbTest, ADryRunWhoseStepMakesNoSenseHasFailed) {
+  ASSERT_EQ(setenv("ROS_PACKAGE_PATH", HIRES_SOURCE_DIR, 1), 0);  // of model://sun
+  const std::string own = std::string(HIRES_SOURCE_DIR) + "/examples/own_robot/";
+  const auto deliver = [&](const std::string& area, const std::string& imagination) {
+    return Run({"--local", "--scenario", own + "scenario.yaml", "--world", own + "hall.world",
+                "--robot", own + "courier.yaml", "--objects", own + "objects.yaml", "--domain",
+                own + "delivery.lisp", "--dry-run", "--imagination", imagination, "deliver",
+                "soup1", area});
+  };
+  for (const std::string area : {"atSquareTable", "behindBar"}) {  // spelt like none
+    for (const std::string imagination : {"off", "domain"}) {
+      const Ended ended = deliver(area, imagination);
+      EXPECT_EQ(ended.code, kExitNotAchieved) << area << ", imagination " << imagination;
+      EXPECT_THAT(ended.out, AllOf(HasSubstr("would begin"), HasSubstr(": failed: "),
+                                   HasSubstr("area '" + base::ToLower(area) + "' is unknown")))
+          << imagination;
+    }
+  }
+  EXPECT_EQ(deliver("atLongTable", "off").code, kExitAchieved);
+}
+
+TEST_F(AchieveVerbTest, AnEmptyWordIsNotTakenForNone) {
+  for (const auto& words : std::vector<std::vector<std::string>>{
+           {"--local", ""}, {"--local", "deliver", "", "atRoundTable"}, {"--local", " "}, {""}}) {
+    const Ended ended = Run(words);
+    EXPECT_EQ(ended.code, kExitNotAchieved);
+    EXPECT_EQ(ended.out, "");
+    EXPECT_THAT(ended.err, AllOf(HasSubstr("task"), HasSubstr("an empty text came")));
+  }
+}
+
 double VirtualSecondsIn(const std::string& text) {
   std::smatch found;
   if (!std::regex_search(text, found, std::regex("([0-9.]+) s of virtual time"))) return -1.0;

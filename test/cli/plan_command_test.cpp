@@ -140,6 +140,14 @@ TEST(PlanCommandTest, AnotherTaskReplacesTheProblems) {
   EXPECT_EQ(network.out, "(!walk home park)\n(!hand_over parcel anna)\n");
 }
 
+TEST(PlanCommandTest, AnEmptyOptionIsNotTakenForNone) {
+  for (const std::string option : {"--task", "--problem", "--name", "--json"}) {
+    for (const std::string empty : {"", "  "}) {
+      ExpectRefused(Plan(Data("delivery.lisp"), {option, empty}), {option, "an empty text came"});
+    }
+  }
+}
+
 TEST(PlanCommandTest, TheProblemMayStandInTheDomainsFile) {
   const Ended ended = Plan(Data("delivery.lisp"), {"--name", "Two_Ways", "--format", "shop2"});
   EXPECT_EQ(ended.code, kExitPlanFound) << ended.err;

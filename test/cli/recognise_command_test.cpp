@@ -77,6 +77,7 @@ TEST_F(RecogniseCommandTest, ACloudOfAnotherFrameIsRefused) {
   EXPECT_EQ(ended.code, kExitBadInput);
   EXPECT_THAT(ended.err, HasSubstr("cloud.pcd: "));
   EXPECT_THAT(ended.err, HasSubstr("points lie behind the camera; wanted an optical frame"));
+  EXPECT_THAT(ended.err, HasSubstr("they are (-y, -z, x). A VIEWPOINT in the file is not applied"));
 }
 
 TEST_F(RecogniseCommandTest, WhatStandsOnTheTableIsNamed) {
@@ -200,9 +201,13 @@ TEST_F(RecogniseCommandTest, BadInputIsRefused) {
   refused({cloud, "--labels", cloud}, "would write over the cloud");
   refused({cloud, "--json", cloud}, "would write over the cloud");
   refused({cloud, "--json", Path("a"), "--labels", Path("a")}, "name two files");
-  perception::PointCloud millimetres = Breakfast();
-  for (Eigen::Vector3f& p : millimetres.points) p *= 1000.0F;
-  refused({Write(millimetres)}, "are these millimetres?");
+  for (const auto& [factor, question] :
+       {std::pair<float, const char*>{1000.0F, "are these millimetres? Divide them by 1000"},
+        {100.0F, "are these centimetres? Divide them by 100"}}) {
+    perception::PointCloud other = Breakfast();
+    for (Eigen::Vector3f& p : other.points) p *= factor;
+    refused({Write(other)}, question);
+  }
   std::ofstream(Path("config.yaml"))
       << "objects: " << HIRES_SOURCE_DIR << "/worlds/objects.yaml\ncategories: {coffee_cup: Mug}\n";
   refused({cloud, "--config", Path("config.yaml")}, "block `concepts` of the catalogue");

@@ -16,10 +16,12 @@ using test_support::FactsOf;
 using test_support::Ranked;
 using test_support::ScriptedWorld;
 using test_support::TaskOf;
+using ::testing::AllOf;
 using ::testing::Contains;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
+using ::testing::Not;
 using ::testing::SizeIs;
 
 ScriptedWorld::Options DryRun(const std::string& problem) {
@@ -164,6 +166,33 @@ TEST(DryRunTest, NobodyWhoImaginesIsSaidAtOnceWithTheDefault) {
   EXPECT_THAT(DriveOf(world.monitor().Steps())->note,
               HasSubstr("no worker is there to imagine it"));
   EXPECT_THAT(world.warnings(), ElementsAre(HasSubstr("without imagination")));
+}
+
+TEST(DryRunTest, AStepThatMakesNoSenseHasFailed) {
+  auto options = DryRun("carry_object");
+  options.imagine = [](const StartImagination& request, int) {
+    ImagineAnswered answer;
+    answer.outcome = ImagineAnswered::Outcome::kInvalid;
+    answer.why = IsOneAlternative(request) ? "never mind" : "area 'nowhere' is unknown";
+    return answer;
+  };
+  ScriptedWorld world(options);
+  const Finish finish = world.Run(TaskOf("carry_object"));
+  EXPECT_EQ(finish.outcome, Finish::Outcome::kFailed);
+  EXPECT_EQ(finish.failure, base::FailureCode::kInvalidAction);
+  EXPECT_THAT(finish.reason, AllOf(HasSubstr("move_base_param("), HasSubstr("area 'nowhere'"),
+                                   Not(HasSubstr("never mind"))))
+      << "how long a step lasts is not asked in earnest";
+  EXPECT_THAT(world.Begun(), IsEmpty());
+}
+
+TEST(DryRunTest, StepsOfTheRobotAreToldApartFromThoseThatImagine) {
+  ScriptedWorld world(SlowDryRun());
+  ExpectNothingBegun(world, world.Run(TaskOf("carry_object")));
+  for (const StepStatus& step : world.monitor().Steps()) {
+    if (step.action.name == "imagine") EXPECT_FALSE(step.is_of_robot);
+    if (step.action.name.rfind("move_", 0) == 0) EXPECT_TRUE(step.is_of_robot);
+  }
 }
 
 TEST(DryRunTest, SilenceEndsAtTheLongestWait) {

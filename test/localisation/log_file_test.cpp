@@ -9,6 +9,7 @@
 #include <fstream>
 #include <functional>
 #include <iterator>
+#include <vector>
 
 #include "hires/base/error.h"
 #include "hires/base/log.h"
@@ -159,6 +160,49 @@ TEST_F(LogFileTest, CorrectedLogHasItsLaserWhereAParameterSays) {
     EXPECT_EQ(scan.X_BL.yaw, 0.0);
   }
   EXPECT_EQ(log.odometry[1].reading.X_OB.x, 4.0) << "odometry stays as it was";
+}
+
+/// Line i of a robot that goes ahead, by the laser at that place.
+std::string ScanFrom(const Pose2& X_BL, int i) {
+  const Pose2 X_OB{0.1 * i, 0.05 * i, 0.03 * i}, X_OL = X_OB * X_BL;
+  return fmt::format("FLASER 1 1 {:.6f} {:.6f} {:.6f} {:.6f} {:.6f} {:.6f}", X_OL.x, X_OL.y,
+                     X_OL.yaw, X_OB.x, X_OB.y, X_OB.yaw) +
+         At(0.1 * i);
+}
+
+TEST_F(LogFileTest, SeveralLasersOfOneNameKeepTheirPlaces) {
+  const std::vector<Pose2> all{
+      {0.2, 0.0, 0.0}, {-0.3, 0.1, kPi}, {0.0, 0.25, kPi / 2}, {0.0, -0.25, -kPi / 2}};
+  for (std::size_t count = 2; count <= all.size(); ++count) {
+    std::string text;
+    for (int i = 0; i < 80; ++i) text += ScanFrom(all[i % count], i);
+    warnings_.clear();
+    const RobotLog log = Read(text);
+    EXPECT_THAT(warnings_, HasSubstr("lines FLASER are of several lasers"));
+    EXPECT_THAT(warnings_, HasSubstr(" from (-0.300 0.100 "));
+    ASSERT_EQ(log.scans.size(), 80u);
+    for (std::size_t i = 0; i < log.scans.size(); ++i) {
+      EXPECT_NEAR(log.scans[i].X_BL.x, all[i % count].x, 1e-5);
+      EXPECT_NEAR(log.scans[i].X_BL.y, all[i % count].y, 1e-5);
+    }
+  }
+}
+
+/// However slowly the corrected pose drifts away, and however rare another place is.
+TEST_F(LogFileTest, PlacesThatDriftOrAreRareAreNoLasers) {
+  for (const double drift : {0.001, 0.01, 0.03}) {
+    std::string text;
+    for (int i = 0; i < 80; ++i) text += ScanFrom({0.2 + drift * i, 0.0, 0.0}, i);
+    warnings_.clear();
+    const RobotLog log = Read("PARAM robot_frontlaser_offset 0.25 nohost 0\n" + text);
+    EXPECT_THAT(warnings_, HasSubstr("not the same in all lines")) << drift;
+    EXPECT_EQ(log.scans.back().X_BL.x, 0.25) << drift;
+  }
+  std::string text;
+  for (int i = 0; i < 80; ++i) text += ScanFrom({i == 40 ? -0.2 : 0.2, 0.0, 0.0}, i);
+  warnings_.clear();
+  Read(text);
+  EXPECT_THAT(warnings_, HasSubstr("not the same in all lines"));
 }
 
 /// A drive as a logger writes it: ODOM and FLASER by turns, each with its time.

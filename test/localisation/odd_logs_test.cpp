@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <sstream>
 
 #include "hires/base/error.h"
 #include "hires/base/log.h"
@@ -244,6 +245,99 @@ TEST_F(OddLogsTest, LogsOfOtherLasersAloneAreSaidToHaveThem) {
     EXPECT_TRUE(Read(TextOf(LinesOf(drive, form))).scans.empty());
     EXPECT_THAT(warnings_, HasSubstr(fmt::format("are not read: 120 {};", kind)));
   }
+}
+
+/// Line RAWLASER1 of each moment.
+std::vector<std::string> RawLinesOf(const std::vector<Moment>& drive) {
+  std::vector<std::string> lines;
+  for (const Moment& moment : drive)
+    lines.push_back(fmt::format("RAWLASER1 0 -1 2 1 30 0.01 0 3 1.5 2.5 3.5 0 {:.6f} nohost 0",
+                                moment.time + 0.05));
+  return lines;
+}
+
+TEST_F(OddLogsTest, ScansWithoutPosesGetTheOdometryOfTheLinesAroundThem) {
+  const std::vector<Moment> drive = DrawDrive(base::Rng(1));
+  std::string text = "PARAM robot_frontlaser_offset 0.25 nohost 0\n";
+  const std::vector<std::string> both = LinesOf(drive, {}), raw = RawLinesOf(drive);
+  for (std::size_t i = 0; i < drive.size(); ++i) text += both[2 * i] + "\n" + raw[i] + "\n";
+  const RobotLog log = Read(text);
+  EXPECT_THAT(warnings_, HasSubstr("120 lines RAWLASER1 tell no poses"));
+  EXPECT_THAT(warnings_, HasSubstr("0.25 m before the base"));
+  ASSERT_EQ(log.scans.size(), 120u);
+  EXPECT_EQ(log.scans[7].reading.ranges, (std::vector<float>{1.5F, 2.5F, 3.5F}));
+  EXPECT_EQ(log.scans[7].reading.angle_min, -1.0);
+  EXPECT_EQ(log.scans[7].reading.angle_increment, 1.0);
+  EXPECT_EQ(log.scans[7].reading.range_max, 30.0);
+  EXPECT_EQ(log.scans[7].X_BL.x, 0.25);
+  EXPECT_FALSE(log.scans[7].X_OB);
+  const auto X_OB = OdometryOf(log, log.scans[7]);
+  ASSERT_TRUE(X_OB);
+  EXPECT_GT((X_OB->position() - drive[7].X_OB.position()).norm(), 1e-4) << "between two readings";
+  EXPECT_LT((X_OB->position() - drive[7].X_OB.position()).norm(), 0.1);
+  EXPECT_THAT(ErrorOf(TextOf(raw)), HasSubstr("120 lines RAWLASER1, which tell no poses"));
+}
+
+TEST_F(OddLogsTest, ScansWithoutPosesBesideOthersArePassedOver) {
+  const std::vector<Moment> drive = DrawDrive(base::Rng(2));
+  const std::vector<std::string> lines = LinesOf(drive, {}), raw = RawLinesOf(drive);
+  const RobotLog plain = Read(TextOf(lines));
+  std::string text;
+  for (std::size_t i = 0; i < drive.size(); ++i)
+    text += raw[i] + "\n" + lines[2 * i] + "\n" + lines[2 * i + 1] + "\n";
+  ExpectSame(Read(text), plain);
+  EXPECT_EQ(warnings_, "");
+}
+
+/// A line without its n last words before the last `kept`.
+std::string Without(const std::string& line, int n, int kept) {
+  std::vector<std::string> words;
+  std::istringstream in(line);
+  for (std::string word; in >> word;) words.push_back(word);
+  words.erase(words.end() - kept - n, words.end() - kept);
+  std::string text = words[0];
+  for (std::size_t i = 1; i < words.size(); ++i) text += " " + words[i];
+  return text;
+}
+
+TEST_F(OddLogsTest, LinesMayLackTimesAndAccelerations) {
+  for (const Form& form : {Form{}, RobotLaser(9, -1.0, 2.0, 0.25)}) {
+    const std::vector<std::string> lines = LinesOf(DrawDrive(base::Rng(3)), form);
+    const RobotLog plain = Read(TextOf(lines));
+    std::vector<std::string> no_accel = lines, no_time = lines, neither = lines;
+    for (std::size_t i = 0; i < lines.size(); ++i) {
+      no_time[i] = Without(lines[i], 3, 0);
+      neither[i] = no_time[i];
+      if (lines[i][0] != 'O') continue;
+      no_accel[i] = Without(lines[i], 1, 3);
+      neither[i] = Without(lines[i], 4, 0);
+    }
+    ExpectSame(Read(TextOf(no_accel)), plain);
+    EXPECT_EQ(warnings_, "");
+    for (const auto& text : {no_time, neither}) {
+      const RobotLog log = Read(TextOf(text));
+      EXPECT_THAT(warnings_, AllOf(HasSubstr("its lines have no times (ipc_timestamp hostname"),
+                                   HasSubstr("times do not advance")));
+      ASSERT_EQ(log.odometry.size(), plain.odometry.size());
+      ASSERT_EQ(log.scans.size(), plain.scans.size());
+      for (std::size_t i = 1; i < log.odometry.size(); ++i) {
+        EXPECT_EQ(log.odometry[i].reading.X_OB.x, plain.odometry[i].reading.X_OB.x);
+        EXPECT_GT(log.odometry[i].time, log.scans[i - 1].time);
+        EXPECT_EQ(log.scans[i].reading.ranges, plain.scans[i].reading.ranges);
+      }
+    }
+    std::vector<std::string> some = lines;  // what single lines lack is no form of the log
+    some[0] = Without(lines[0], 3, 0);
+    Read(TextOf(some));
+    EXPECT_THAT(warnings_, HasSubstr("line 1: ODOM has 7 words; wanted 10"));
+  }
+}
+
+TEST_F(OddLogsTest, DecimalCommasAreNamed) {
+  std::string text = TextOf(LinesOf(DrawDrive(base::Rng(4)), {}));
+  std::replace(text.begin(), text.end(), '.', ',');
+  EXPECT_THAT(ErrorOf(text), HasSubstr("line 1: x of the odometry is '"));
+  EXPECT_THAT(ErrorOf(text), HasSubstr("is that a decimal comma? Write points in the whole log"));
 }
 
 TEST_F(OddLogsTest, FilesOfOtherKindsAreNamed) {

@@ -4,6 +4,8 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
+#include <utility>
 
 #include "support/rounds.h"
 #include "support/simulated_drive.h"
@@ -115,6 +117,116 @@ TEST(MapDoubtTest, BeamsInReverseOrderAreDoubtful) {
   }
 }
 
+void ScaleRanges(float factor, RobotLog* log) {
+  for (RobotLog::Scan& scan : log->scans) {
+    for (float& range : scan.reading.ranges) range *= factor;
+    scan.reading.range_max *= factor;
+  }
+}
+
+/// Such a map agrees with itself: only odometry tells how large it is.
+TEST(MapDoubtTest, RangesInAnotherUnitThanTheOdometryAreDoubtful) {
+  for (int seed = 1; seed <= hires::test_support::Rounds(4); ++seed) {
+    for (const float factor : {0.5F, 1.5F, 2.0F, 3.2808F}) {
+      SimulatedDrive drive = TwoRoomsDrive({}, seed);
+      ScaleRanges(factor, &drive.log);
+      const MapResult result = MakeMap(drive.log);
+      SCOPED_TRACE(testing::Message() << seed << " " << factor << " " << result.ways_alike);
+      EXPECT_THAT(DoubtOf(result), HasSubstr("times as far as odometry tells"));
+      EXPECT_THAT(WhatToDo(result, result.evidence),
+                  HasSubstr(factor > 3.0F ? "are the ranges in feet" : "both in metres"));
+    }
+  }
+}
+
+TEST(MapDoubtTest, OdometryOfAnotherScaleIsDoubtful) {
+  for (int seed = 1; seed <= hires::test_support::Rounds(4); ++seed) {
+    for (const double factor : {0.5, 2.0}) {
+      SimulatedDrive drive = TwoRoomsDrive({}, seed);
+      for (RobotLog::Odometry& odometry : drive.log.odometry) {
+        odometry.reading.X_OB.x *= factor;
+        odometry.reading.X_OB.y *= factor;
+      }
+      const MapResult result = MakeMap(drive.log);
+      SCOPED_TRACE(testing::Message() << seed << " " << factor << " " << result.ways_alike);
+      EXPECT_THAT(DoubtOf(result), HasSubstr("times as far as odometry tells"));
+    }
+  }
+}
+
+/// Lasers of other fields of view, written as FLASER, which always means 180 degrees.
+TEST(MapDoubtTest, AnotherFieldOfViewIsDoubtfulAndNamed) {
+  for (int seed = 1; seed <= hires::test_support::Rounds(4); ++seed) {
+    for (const double degrees : {130.0, 240.0}) {
+      SimulatedDriveParams params;
+      params.field_of_view = degrees * geometry::kPi / 180.0;
+      params.beams = 342;
+      SimulatedDrive drive = TwoRoomsDrive(params, seed);
+      for (RobotLog::Scan& scan : drive.log.scans) {
+        scan.reading.angle_min = -geometry::kPi / 2.0;
+        scan.reading.angle_increment = geometry::kPi / (params.beams - 1);
+      }
+      const MapResult result = MakeMap(drive.log);
+      SCOPED_TRACE(testing::Message() << seed << " " << degrees << " " << result.turns_alike);
+      EXPECT_TRUE(result.evidence.is_field_assumed);
+      EXPECT_THAT(DoubtOf(result), HasSubstr("of the turns that odometry tells"));
+      EXPECT_THAT(WhatToDo(result, result.evidence), HasSubstr("not the 180"));
+    }
+  }
+}
+
+/// Wheels of a base that skids tell more turns than it makes; the laser mends the map.
+TEST(MapDoubtTest, ABaseThatSkidsIsNoReasonForDoubt) {
+  for (int seed = 1; seed <= hires::test_support::Rounds(4); ++seed) {
+    SimulatedDrive drive = TwoRoomsDrive({}, seed);
+    geometry::Pose2 before = drive.log.odometry.front().reading.X_OB, X_OB = before;
+    for (RobotLog::Odometry& odometry : drive.log.odometry) {
+      geometry::Pose2 step = before.Inverse() * odometry.reading.X_OB;
+      before = odometry.reading.X_OB;
+      step.yaw *= 1.4;
+      X_OB = X_OB * step;
+      odometry.reading.X_OB = X_OB;
+    }
+    const MapResult result = MakeMap(drive.log);
+    SCOPED_TRACE(testing::Message() << seed << " " << result.turns_alike);
+    ASSERT_LE(TrajectoryRms(result.trajectory, drive.truth), 0.2);
+    EXPECT_FALSE(result.evidence.is_field_assumed);
+    EXPECT_EQ(DoubtOf(result), "");
+  }
+}
+
+/// x and y in each other's place, or a laser that looks to the side, and the log says ahead: ways
+/// are as long as odometry tells, but go elsewhere.
+TEST(MapDoubtTest, WaysInAnotherDirectionThanTheOdometryAreDoubtful) {
+  for (int seed = 1; seed <= hires::test_support::Rounds(4); ++seed) {
+    SimulatedDrive swapped = TwoRoomsDrive({}, seed), aside = TwoRoomsDrive({}, seed);
+    for (RobotLog::Odometry& odometry : swapped.log.odometry)
+      std::swap(odometry.reading.X_OB.x, odometry.reading.X_OB.y);
+    for (RobotLog::Scan& scan : aside.log.scans) scan.X_BL.yaw += geometry::kPi / 2.0;
+    for (const SimulatedDrive* drive : {&swapped, &aside}) {
+      const MapResult result = MakeMap(drive->log);
+      SCOPED_TRACE(testing::Message() << seed << " " << result.num_disagreed);
+      EXPECT_THAT(DoubtOf(result), HasSubstr("laser and odometry disagreed on"));
+      EXPECT_THAT(WhatToDo(result, result.evidence), HasSubstr("the laser's place on the robot"));
+    }
+  }
+}
+
+/// Between scan and scan it tells other turns than the laser; over a while it does not.
+TEST(MapDoubtTest, LateOdometryIsNoReasonForDoubt) {
+  for (int seed = 1; seed <= hires::test_support::Rounds(4); ++seed) {
+    for (const double late : {0.2, 0.4}) {
+      SimulatedDrive drive = TwoRoomsDrive({}, seed);
+      for (RobotLog::Odometry& odometry : drive.log.odometry) odometry.time += late;
+      const MapResult result = MakeMap(drive.log);
+      SCOPED_TRACE(testing::Message() << seed << " " << late << " " << result.turns_alike);
+      EXPECT_NEAR(result.ways_alike, 1.0, 0.1);
+      EXPECT_THAT(DoubtOf(result), Not(HasSubstr("of the turns")));
+      EXPECT_THAT(DoubtOf(result), Not(HasSubstr("disagreed on")));
+    }
+  }
+}
+
 /// The robot is turned by hand where it stands, and nothing tells it.
 TEST(MapDoubtTest, BreakOfTheMapIsDoubtful) {
   int num_wrong = 0;
@@ -171,6 +283,36 @@ TEST(MapDoubtTest, EachReasonIsSaidWithARemedy) {
   EXPECT_THAT(WhyDoubtful(counts, evidence), HasSubstr("opposite directions"));
   counts.turns_alike = 0.4;
   EXPECT_THAT(WhyDoubtful(counts, evidence), HasSubstr("40 % of the turns"));
+  counts = {};
+  for (const double alike : {0.84, 1.2}) {
+    counts.turns_alike = counts.ways_alike = alike;
+    EXPECT_EQ(WhyDoubtful(counts, evidence), "");
+  }
+  counts = {};
+  counts.turns_alike = 0.75;
+  evidence.field_of_view = geometry::kPi;
+  EXPECT_EQ(WhyDoubtful(counts, evidence), "") << "as of a base that skids";
+  evidence.is_field_assumed = true;
+  EXPECT_THAT(WhyDoubtful(counts, evidence), HasSubstr("75 % of the turns"));
+  EXPECT_THAT(WhatToDo(counts, evidence), HasSubstr("see 240 degrees, as the odometry's turns say, "
+                                                    "and not the 180"));
+  counts = {};
+  for (const auto& [alike, question] :
+       {std::pair<double, const char*>{3.3, "ranges in feet? Divide them by 3.2808"},
+        {0.3, "odometry in feet"},
+        {98.0, "ranges in centimetres"},
+        {0.001, "odometry in millimetres"},
+        {1.5, "both in metres"}}) {
+    counts.ways_alike = alike;
+    EXPECT_THAT(WhyDoubtful(counts, evidence), HasSubstr("times as far as odometry tells"));
+    EXPECT_THAT(WhatToDo(counts, evidence), HasSubstr(question)) << alike;
+  }
+  counts = {};
+  counts.num_stretches = 100;
+  counts.num_disagreed = 75;
+  EXPECT_EQ(WhyDoubtful(counts, evidence), "");
+  counts.num_disagreed = 76;
+  EXPECT_THAT(WhyDoubtful(counts, evidence), HasSubstr("disagreed on 76 of 100 stretches"));
   counts = {};
   evidence.explained = 0.55;
   EXPECT_THAT(WhyDoubtful(counts, evidence), HasSubstr("55 % of the beams ended"));

@@ -165,13 +165,15 @@ std::string CarmenText(const RobotLog& log) {
   return text;
 }
 
-/// The robot goes ahead by 0.1 m in each of `count` steps of 0.1 s; walls are 3 m away.
+/// The robot goes ahead by 0.1 m in each of `count` steps of 0.1 s; a wall is 3 m away, aslant:
+/// beams that are all alike have met nothing.
 RobotLog ShortLog(int count = 10) {
   RobotLog log;
   for (int i = 0; i < count; ++i) {
     const double time = kBegin + 0.1 * i;
     log.odometry.push_back({time, {{0.1 * i, 0.0, 0.0}, {}}});
-    log.scans.push_back({time, {0.25, 0.0, 0.0}, {-1.0, 0.5, 0.02, {3, 3, 3, 3, 3}, 30.0}, {}});
+    log.scans.push_back(
+        {time, {0.25, 0.0, 0.0}, {-1.0, 0.5, 0.02, {3.0F, 3.1F, 3.2F, 3.3F, 3.4F}, 30.0}, {}});
   }
   return log;
 }
@@ -541,8 +543,38 @@ TEST_F(DriveBagTest, LaserWhosePlaceNobodySaysIsNamed) {
   style.mount = "";
   Write(ShortLog(), style);
   EXPECT_THAT(Error(), AllOf(HasSubstr("its /tf and /tf_static do not tell where the laser's frame "
-                                       "'laser' is in the base 'base_link'"),
+                                       "'laser' is in the base 'base_link' (they tell of no "
+                                       "frame)"),
                              HasSubstr("--laser \"x y yaw\" [m, m, rad]")));
+  Write(ShortLog(), style, [](rosbag::Bag* bag) {
+    const Pose3 X_BL{{0.2, 0.0, 0.5}, Eigen::Quaterniond::Identity()};
+    bag->write("/tf_static", ros::Time(kBegin), LinkOf("base_link", "base_scan", kBegin, X_BL));
+  });
+  EXPECT_THAT(Error(), HasSubstr("(they tell of base_link, base_scan); record both topics too"));
+}
+
+TEST_F(DriveBagTest, AnglesAreToldByTheirSpanWhereTheIncrementIsZero) {
+  RobotLog log = ShortLog();  // five beams from -1 to 1 rad
+  const RobotLog whole = log;
+  for (RobotLog::Scan& scan : log.scans) scan.reading.angle_increment = 0.0;
+  Write(log, {});
+  EXPECT_THAT(Error(), HasSubstr("left out: 10 scans whose angles are no numbers"))
+      << "angle_max is 0, too";
+  WriteOnly([&](rosbag::Bag* bag) {
+    bag->write("/tf_static", ros::Time(kBegin), LinkOf("base_link", "laser", kBegin, {}));
+    for (std::size_t i = 0; i < log.scans.size(); ++i) {
+      sensor_msgs::LaserScan msg = ScanOf(log.scans[i]);
+      msg.angle_max = 1.0F;
+      bag->write("/odom", msg.header.stamp,
+                 OdometryOf(log.scans[i].time, log.odometry[i].reading.X_OB));
+      bag->write("/scan", msg.header.stamp, msg);
+    }
+  });
+  const RobotLog read = Read();
+  EXPECT_THAT(told_, HasSubstr("angle_increment of scans is 0"));
+  ASSERT_EQ(read.scans.size(), 10u);
+  for (const RobotLog::Scan& scan : read.scans)
+    EXPECT_EQ(scan.reading.angle_increment, whole.scans[0].reading.angle_increment);
 }
 
 TEST_F(DriveBagTest, LaserMayHangOnAChainOfFixedAndMovingFrames) {

@@ -1,6 +1,9 @@
 #include "hires/perception/point_cloud.h"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
+
+#include <cmath>
 
 namespace hires::perception::point_cloud_test {
 namespace {
@@ -34,6 +37,40 @@ TEST(TakeOnlyAheadTest, FewPointsBehindAreDroppedAndManySayThatTheFrameIsWrong) 
   EXPECT_EQ(TakeOnlyAhead(&cloud),
             "2 of 10 points lie behind the camera; wanted an optical frame (x right, y down, z "
             "forward)");
+}
+
+/// A table 0.9 m ahead of a camera that looks down, in the frame of a base: z up from the floor.
+TEST(TakeOnlyAheadTest, FramesWithZUpAreNone) {
+  for (const float ahead : {0.0F, 0.5F, 1.0F}) {
+    PointCloud cloud;
+    for (int i = 0; i < 20; ++i) {
+      for (int k = 0; k < 20; ++k) {
+        const float x = ahead + 0.1F * static_cast<float>(i);
+        const float y = -1.0F + 0.1F * static_cast<float>(k);
+        cloud.points.emplace_back(x, y, i > 8 && i < 15 ? 0.72F : 0.02F);
+      }
+    }
+    cloud.width = static_cast<int>(cloud.points.size());
+    EXPECT_THAT(TakeOnlyAhead(&cloud),
+                testing::HasSubstr("more than 60 degrees off the z axis, along which the camera "
+                                   "looks; wanted an optical frame (x right, y down, z forward)"))
+        << ahead;
+  }
+}
+
+TEST(TakeOnlyAheadTest, AWideCameraAndAFewPointsAsideAreNoOtherFrame) {
+  PointCloud cloud;
+  for (int i = 0; i < 1000; ++i) {
+    const float angle = 0.00104F * static_cast<float>(i);  // up to 59.5 degrees
+    const float sign = i % 2 == 0 ? 1.0F : -1.0F;
+    cloud.points.emplace_back(sign * std::tan(angle), 0.0F, 1.0F);
+  }
+  cloud.width = 1000;
+  for (int i = 0; i < 20; ++i) cloud.points[50 * i] = {0.0F, 2.0F, 1.0F};
+  EXPECT_EQ(TakeOnlyAhead(&cloud), "");
+  EXPECT_TRUE(IsMeasured(cloud.points[50])) << "what is ahead stays";
+  cloud.points[1] = {0.0F, -2.0F, 1.0F};
+  EXPECT_THAT(TakeOnlyAhead(&cloud), testing::HasSubstr("21 of 1000 points lie more than 60"));
 }
 
 }  // namespace

@@ -296,11 +296,68 @@ TEST(HddlTypesTest, ATypeThatIsOnlyAParentIsDeclaredByThat) {
                                    "(%type-anything mug)", "(%type-anything x)"));
 }
 
+TEST(HddlDomainTest, TheFaultOfEachActionAndMethodIsToldAtOnce) {
+  try {
+    ReadHddlDomain(
+        "(define (domain d) (:predicates (p)) (:task t)\n"
+        "(:action a :effect (q))\n(:action b :parameters () :precondition (r))\n"
+        "(:method m :task (t) :subtasks (u))\n(:method n :task (t) :subtasks (a)))",
+        "bad.hddl");
+    FAIL() << "nothing was wrong";
+  } catch (const base::ConfigError& error) {
+    for (const std::string line : {"bad.hddl:2:", "bad.hddl:3:", "bad.hddl:4:"}) {
+      EXPECT_THAT(error.what(), HasSubstr(line));
+    }
+    EXPECT_THAT(error.what(), ::testing::Not(HasSubstr("bad.hddl:5:")));
+  }
+}
+
+/// What is said of a problem with a goal alone, in a domain with these methods.
+std::string GoalAloneError(const std::string& methods) {
+  const Domain domain = ReadHddlDomain(
+      "(define (domain d) (:predicates (p)) (:task t) (:action a :effect (p))" + methods + ")",
+      "d.hddl");
+  try {
+    ReadHddlProblem("(define (problem x) (:domain d) (:init) (:goal (p)))", "x.pddl", domain);
+  } catch (const base::ConfigError& error) {
+    return error.what();
+  }
+  return "no error";
+}
+
+TEST(HddlProblemTest, WithoutTasksWhereNothingIsDecomposedItIsCalledPddl) {
+  EXPECT_THAT(GoalAloneError("(:method m :task (t) :subtasks (a))"),
+              AllOf(HasSubstr("(:htn ...) is missing"), ::testing::Not(HasSubstr("PDDL"))));
+  const Domain plain =
+      ReadHddlDomain("(define (domain d) (:predicates (p)) (:action a :effect (p)))", "d.hddl");
+  try {
+    ReadHddlProblem("(define (problem x) (:domain d) (:init) (:goal (p)))", "x.pddl", plain);
+    FAIL() << "nothing was wrong";
+  } catch (const base::ConfigError& error) {
+    EXPECT_THAT(error.what(), AllOf(HasSubstr("(:htn ...) is missing"), HasSubstr("PDDL")));
+  }
+}
+
 TEST(HddlRequirementsTest, SingularsAndMisspellingsOfTheCompetitionAreKnown) {
   EXPECT_NO_THROW(ReadHddlDomain(
       "(define (domain d) (:requirements :hierachie :existential-precondition :Method-Precondition "
       ":htn :universal-preconditions))",
       "d.hddl"));
+}
+
+TEST(HddlRequirementsTest, WhatTheFileDoesNotUseIsWarnedOfOnce) {
+  const Domain domain = ReadHddlDomain(
+      "(define (domain d)\n(:requirements :typing :fluents :durative-actions :preferences))",
+      "d.hddl");
+  EXPECT_THAT(domain.warnings,
+              ElementsAre(AllOf(HasSubstr("d.hddl:2:24: (:requirements ...)"),
+                                HasSubstr(":fluents :durative-actions :preferences are not"))));
+  const Problem problem = ReadHddlProblem(
+      "(define (problem p) (:domain d) (:requirements :fluents) (:htn) (:init))", "p.hddl", domain);
+  EXPECT_THAT(problem.warnings, ElementsAre(HasSubstr(":fluents is not supported")));
+  EXPECT_THAT(
+      ReadHddlDomain("(define (domain d) (:requirements :typing :strips))", "d.hddl").warnings,
+      IsEmpty());
 }
 
 TEST(HddlTypesTest, WithoutTypesEverythingIsAnObject) {
@@ -408,9 +465,8 @@ BadText After(const std::string& text, std::vector<std::string> message) {
 INSTANTIATE_TEST_SUITE_P(
     Sections, BadHddlDomainTest,
     testing::Values(
-        BadText{"(:requirements :typing :durative-actions)",
-                {"bad.hddl:2:24: (:requirements ...)", ":durative-actions", "not supported",
-                 ":typing"}},
+        BadText{"(:requirements :typing 7)",
+                {"bad.hddl:2:24: (:requirements ...)", "7 came", ":typing"}},
         BadText{"(:predicate (p))", {"bad.hddl:2:1", "':predicate' is unknown", "':predicates'"}},
         BadText{"(:types a) (:types b)", {"bad.hddl:2:12", "stands twice", "line 2"}},
         BadText{"(predicates (p))", {"bad.hddl:2:1", "wanted a section such as"}},

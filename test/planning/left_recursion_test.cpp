@@ -1,6 +1,8 @@
 #include <gmock/gmock.h>
 
+#include <algorithm>
 #include <string>
+#include <vector>
 
 #include "hires/planning/plan.h"
 #include "hires/planning/planner.h"
@@ -45,10 +47,11 @@ struct Solved {
   std::vector<std::string> violations;
 };
 
-Solved Solve(const char* domain_text, const char* problem_text) {
+Solved Solve(const char* domain_text, const char* problem_text, Which which = Which::kFirst) {
   const Domain domain = ReadHddlDomain(domain_text, "domain.hddl");
   const Problem problem = ReadHddlProblem(problem_text, "problem.hddl", domain);
   PlanRequest request;
+  request.which = which;
   request.stop = [](const Progress& progress) {
     return progress.expansions > 100'000 ? Stop::kTime : Stop::kContinue;
   };
@@ -75,6 +78,43 @@ TEST(LeftRecursionTest, IsSearchedWhereNothingElseLeadsToAPlan) {
   ASSERT_EQ(solved.result.outcome, PlanOutcome::kFound);
   EXPECT_EQ(ToShop2Plan(solved.result.plans[0]), "(!a)\n(!b)\n");
   EXPECT_THAT(solved.violations, testing::IsEmpty());
+}
+
+/// The same, with the method that comes back to its own task in front.
+std::string DownFirst() {
+  std::string text = kRoads;
+  const std::size_t there = text.find("  (:method there"), via = text.find("  (:method via");
+  const std::size_t drive = text.find("  (:action drive");
+  return text.substr(0, there) + text.substr(via, drive - via) + text.substr(there, via - there) +
+         text.substr(drive);
+}
+
+// The whole search goes down the left recursion and never comes back.
+TEST(LeftRecursionTest, TheCheapestAndAllPlansHaveAtLeastWhatIsFoundWithoutIt) {
+  const std::string domain = DownFirst();
+  for (const Which which : {Which::kFirst, Which::kBest, Which::kAll}) {
+    const Solved solved = Solve(domain.c_str(), kFromOneToFour, which);
+    ASSERT_EQ(solved.result.plans.size(), 1u);
+    EXPECT_EQ(ToShop2Plan(solved.result.plans[0]),
+              "(!drive p1 p2)\n(!drive p2 p3)\n(!drive p3 p4)\n");
+    EXPECT_THAT(solved.violations, testing::IsEmpty());
+    EXPECT_FALSE(solved.result.exhausted) << "there may be others";
+    EXPECT_EQ(solved.result.outcome,
+              which == Which::kFirst ? PlanOutcome::kFound : PlanOutcome::kLimitTime);
+  }
+}
+
+TEST(LeftRecursionTest, NoPlanIsFoundTwice) {
+  // The shorter row is found without left recursion, and all by the whole search.
+  const std::string bounded = std::string(kBoth).replace(std::string(kBoth).find("(:goal"),
+                                                         std::string::npos, "(:goal (first)))");
+  const Solved solved = Solve(kRows, bounded.c_str(), Which::kAll);
+  std::vector<std::string> texts;
+  for (const Plan& plan : solved.result.plans) texts.push_back(ToShop2Plan(plan));
+  ASSERT_FALSE(texts.empty());
+  EXPECT_EQ(texts[0], "(!a)\n");
+  std::sort(texts.begin(), texts.end());
+  EXPECT_EQ(std::adjacent_find(texts.begin(), texts.end()), texts.end());
 }
 
 }  // namespace

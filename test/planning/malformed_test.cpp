@@ -60,8 +60,10 @@ TEST(MalformedTest, FilesAreToldApart) {
       {"", {"bad.lisp:1:1", "holds no domain", "(defdomain name (items...))"}},
       {"(defproblem p () ())", {"bad.lisp:1:1", "holds no domain"}},
       {"(defdomain a ())\n(defdomain b ())", {"bad.lisp:2:1", "second domain", "line 1"}},
-      {"(defdomain a ())\n(defun f (x) x)", {"bad.lisp:2:1", "(defun f (x) x)", "runs no code"}},
-      {"(declaim (optimize speed))\n(defdomain a ())", {"bad.lisp:1:1", "(declaim", "take this"}},
+      {"(defdomain a ())\n(:method (m) () ())", {"bad.lisp:2:1", "(:method", "')' too many"}},
+      {"(defdomian a ())", {"bad.lisp:1:1", "came (defdomian a ())", "(defdomain name"}},
+      {"(defdomain a ())\n(defproblem p () ()) ((walk b))", {"bad.lisp:2:22", "came ((walk b))"}},
+      {"(defdomain a ())\n(shop:defproblme p () ())", {"bad.lisp:2:1", "(defproblem name"}},
       {"defdomain", {"bad.lisp:1:1", "came defdomain"}},
       {"(define (domain d))", {"bad.lisp:1:1", "came (define (domain d))", "(defdomain"}},
       {"(defdomain d (\n(:operator (!go) () ())\n", {"bad.lisp:1:14", "add the missing ')'"}},
@@ -105,8 +107,10 @@ TEST(MalformedTest, Operators) {
        {"bad.lisp:3:45", "?v in an add"}},
       {DomainWith("(:operator (!load) (in a) ())"),
        {"bad.lisp:3:20", "came (in a)", "a list of effects"}},
-      {DomainWith("(:operator (!load) (in) ((not (in a))) ())"),
-       {"bad.lisp:3:26", "'not' is a logical word"}},
+      {DomainWith("(:operator (!load) (in) () ((not (in a))))"),
+       {"bad.lisp:3:29", "'not' is a logical word"}},
+      {DomainWith("(:operator (!load) () ((:protection (not (p)))))"),
+       {"bad.lisp:3:24", "operator '!load'", "(:protection (not (p)))", "as SHOP3 can"}},
       {DomainWith("(:operator (!load) ((:protection)) ())"),
        {"bad.lisp:3:21", "came (:protection)", "(:protection (predicate"}},
       {DomainWith("(:operator (!load) ((forall (?u) (p ?u))) ())"),
@@ -196,12 +200,24 @@ TEST(MalformedTest, Problems) {
       {WithProblem("d ((at a) b) nil"), {"bad.lisp:4:25", "came b", "a fact (predicate"}},
       {WithProblem("d ((at ?x)) nil"), {"bad.lisp:4:18", "(at ?x)", "without variables"}},
       {WithProblem("d ((at a . b)) nil"), {"bad.lisp:4:18", "(at a . b)", "a fact"}},
-      {WithProblem("d ((not (at a))) nil"), {"bad.lisp:4:18", "'not' is a logical word"}},
+      {WithProblem("d ((not ?x) at) nil"), {"bad.lisp:4:27", "came at", "a fact (predicate"}},
       {WithProblem("7 ((at a)) nil"), {"bad.lisp:4:15", "came 7", "a name"}},
       {WithProblem("d () ((wolk a))"), {"bad.lisp:4:21", "problem 'p'", "did you mean 'walk'"}},
       {WithProblem("d () ((walk a b))"),
        {"bad.lisp:4:21", "task 'walk' has 2 arguments", "method (walk ?to) in line 3 takes 1"}},
   });
+}
+
+TEST(MalformedTest, EachItemsFaultIsToldAtOnce) {
+  const std::string message = ErrorOf(
+      DomainWith("(:operator (load ?x) () ())\n(:method (m) () 7)\n(:- p ((q)))\n(:static p)"));
+  for (const std::string place :
+       {"bad.lisp:3:12", "bad.lisp:4:17", "bad.lisp:5:5", "bad.lisp:6:1"}) {
+    EXPECT_THAT(message, HasSubstr(place));
+  }
+  std::string many;
+  for (int i = 0; i < 1000; ++i) many += "(:static p)";
+  EXPECT_THAT(ErrorOf(DomainWith(many)), HasSubstr("and 990 more"));
 }
 
 TEST(MalformedTest, NoProblemAtAll) {

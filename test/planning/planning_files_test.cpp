@@ -7,7 +7,10 @@
 #include <filesystem>
 
 #include "hires/base/error.h"
+#include "hires/planning/plan.h"
 #include "hires/planning/planner.h"
+#include "hires/planning/task_text.h"
+#include "hires/planning/validator.h"
 #include "support/temporary_folder.h"
 
 namespace hires::planning::planning_files_test {
@@ -53,6 +56,38 @@ TEST(LanguageOfTest, OtherFilesAreNamed) {
         << text;
   }
   EXPECT_THAT(ErrorOf([] { LanguageOf("(setq x 1)", "notes.txt"); }), HasSubstr("(setq"));
+}
+
+TEST(LanguageOfTest, WhatIsWrittenInUtf16OrEmptyIsCalledSo) {
+  using std::string_literals::operator""s;
+  for (const std::string& text : {"\xFF\xFE(\0d\0"s, "\xFE\xFF\0(\0d"s, "(\0d\0"s, "\0(\0d"s}) {
+    EXPECT_THAT(ErrorOf([&] { LanguageOf(text, "d.lisp"); }),
+                AllOf(HasSubstr("d.lisp: "), HasSubstr("UTF-16"), HasSubstr("save it as UTF-8")));
+  }
+  for (const char* text : {"", " \n\t", "\xEF\xBB\xBF\n"}) {
+    EXPECT_THAT(ErrorOf([&] { LanguageOf(text, "d.lisp"); }), HasSubstr("it is empty, wanted"));
+  }
+}
+
+TEST(LanguageOfTest, FormsOfLispMayStandBefore) {
+  using Language = Domain::Language;
+  for (const std::string before : {"(progn (ql:quickload :shop3))", "(defpackage :x)", "#+x (f)",
+                                   "(cl:in-package #:shop-user)", "(eval-when () 1)"}) {
+    EXPECT_EQ(LanguageOf(before + " (defdomain d ())", "f"), Language::kShop2) << before;
+    EXPECT_EQ(LanguageOf(before + " (shop:defproblem p () ())", "f"), Language::kShop2) << before;
+  }
+  EXPECT_EQ(LanguageOf("(shop2:defdomain d ())", "f"), Language::kShop2);
+}
+
+TEST(LoadTest, WhatIsToldOfAFileIsToldOnce) {
+  const hires::test_support::TemporaryFolder folder;
+  const std::string path = folder.Write(
+      "d.lisp", std::string(kShop2Domain) + "(defproblem p d () ((!go a)))(find-plans 'p)");
+  const Domain domain = LoadDomain(path);
+  EXPECT_THAT(domain.warnings, ElementsAre(HasSubstr("(find-plans ...)")));
+  EXPECT_THAT(LoadProblems(path, domain).at(0).warnings, IsEmpty());
+  const std::string other = folder.Write("p.lisp", "(defproblem p d () ((!go a)))(find-plans 'p)");
+  EXPECT_THAT(LoadProblems(other, domain).at(0).warnings, ElementsAre(HasSubstr("p.lisp:1:30")));
 }
 
 TEST(LoadTest, BothLanguagesAreLoaded) {
@@ -151,6 +186,43 @@ TEST(LoadTest, TasksOfProblemsAreCheckedAgainstTheDomain) {
   const std::string problem = folder.Write("p.lisp", "(defproblem p d ()\n ((!fly a)))");
   EXPECT_THAT(ErrorOf([&] { LoadProblems(problem, domain); }),
               AllOf(HasSubstr("p.lisp:2:3"), HasSubstr("did you mean '!go'")));
+}
+
+TEST(LoadTest, TheProblemsBesideOneThatIsWrongCanBePlannedFor) {
+  const hires::test_support::TemporaryFolder folder;
+  const Domain domain = LoadDomain(folder.Write("d.lisp", kShop2Domain));
+  const std::string path =
+      folder.Write("p.lisp",
+                   "(defproblem p1 d () ((!go a b)))\n(defproblem p2 d () ((!go a)))\n"
+                   "(defproblem p3 d () ((!fly a)))\n(defproblem p4 d ((at ?x)) ((!go a)))");
+  const std::vector<Problem> problems = LoadProblems(path, domain);
+  ASSERT_THAT(problems, SizeIs(4));
+  const Problem& good = FindProblem(problems, "P2");
+  EXPECT_EQ(FindPlans(domain, good).outcome, PlanOutcome::kFound);
+  EXPECT_THAT(good.warnings, ElementsAre(AllOf(HasSubstr("p.lisp:1:22"), HasSubstr("'p1'"),
+                                               HasSubstr("(3 such problems)"))));
+  EXPECT_THAT(ErrorOf([&] { FindProblem(problems, "p1"); }), HasSubstr("p.lisp:1:22"));
+  EXPECT_THAT(ErrorOf([&] { FindProblem(problems, "p3"); }), HasSubstr("did you mean '!go'"));
+  EXPECT_THAT(ErrorOf([&] { FindProblem(problems, "p4"); }), HasSubstr("p.lisp:4:19"));
+}
+
+TEST(LoadTest, ADomainInTheLanguageOfJshop2IsPlannedFor) {
+  const hires::test_support::TemporaryFolder folder;
+  const std::string path = folder.Write("d.lisp", R"((defdomain labels (
+    (:operator (!stick ?box ?label ?way) () () ((labelled ?box ?label)))
+    (:method (mark ?box ?label)
+      ((call Member ?label (fragile heavy (call + 1 2))) (assign ?way (by hand ?box)))
+      ((!stick ?box ?label ?way)))))
+    (defproblem p labels () ((mark b1 heavy)) () ((mark b1 3)) () ((mark b1 light))))");
+  const Domain domain = LoadDomain(path);
+  const std::vector<Problem> problems = LoadProblems(path, domain);
+  ASSERT_THAT(problems, SizeIs(3));
+  const PlanResult heavy = FindPlans(domain, problems[0]);
+  ASSERT_EQ(heavy.outcome, PlanOutcome::kFound);
+  EXPECT_EQ(ToShop2Plan(heavy.plans[0]), "(!stick b1 heavy (by hand b1))\n");
+  EXPECT_THAT(ValidatePlan(domain, problems[0], heavy.plans[0]), IsEmpty());
+  EXPECT_EQ(FindPlans(domain, problems[1]).outcome, PlanOutcome::kFound);
+  EXPECT_EQ(FindPlans(domain, problems[2]).outcome, PlanOutcome::kNoPlan);
 }
 
 TEST(LoadTest, AMissingFileIsNamed) {

@@ -6,11 +6,13 @@
 #include <filesystem>
 
 #include "hires/base/text.h"
+#include "support/messages.h"
 
 namespace hires::planning::shop2_reader_test {
 namespace {
 
 using ::testing::AllOf;
+using ::testing::Contains;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
@@ -233,6 +235,17 @@ TEST(OperatorReaderTest, ADeleteWhoseVariableNothingBindsIsWarnedOf) {
   EXPECT_THAT(DomainOf("(:op (!o) :delete ((p ?x ?y)))").warnings, SizeIs(2));
 }
 
+TEST(OperatorReaderTest, ALogicalWordAmongDeletesDeletesNothingAndIsWarnedOf) {
+  for (const std::string word : {"(or (p ?x) (q))", "(not (p ?x))", "(and)", "(imply (p) (q))"}) {
+    const std::string deletes = "((q ?lamp) " + word + " (forall (?v) ((p ?v)) ((p ?v))))";
+    EXPECT_THAT(WarningsOf("() " + deletes + " ()"),
+                ElementsAre(AllOf(HasSubstr("test.lisp:2:15: operator '!unplug'"), HasSubstr(word),
+                                  HasSubstr("deletes nothing"))));
+    EXPECT_EQ(OperatorOf("((q ?x) " + word + ") ()"), OperatorOf("((q ?x)) ()"));
+    EXPECT_THAT(DomainOf("(:op (!o ?x) :delete (" + word + "))").warnings, SizeIs(1));
+  }
+}
+
 TEST(OperatorReaderTest, ADeleteWhoseVariablesAreBoundIsNotWarnedOf) {
   for (const char* text :
        {"((plugged ?lamp ?s)) ((plugged ?lamp ?s)) ()", "((?goal ?s) ?x) ((p ?s) ?x) ()",
@@ -379,6 +392,50 @@ TEST(Shop2ProblemTest, FactsAreInTheirOrderAndMayHoldListsAndNumbers) {
   EXPECT_FALSE(problem.goal.has_value());
 }
 
+TEST(Shop2ProblemTest, WhatCannotBeAskedForAmongFactsIsPassedOver) {
+  const Problem problem = ProblemOf("d (nil (on a b) () (not (p x)) (or (q) (r)) (f 1)) ()");
+  EXPECT_THAT(problem.facts, SizeIs(2));
+  EXPECT_THAT(problem.warnings,
+              ElementsAre(AllOf(HasSubstr("test.lisp:1:34: problem 'p'"), HasSubstr("(not (p x))"),
+                                HasSubstr("(2 such)"), HasSubstr("passed over"))));
+  EXPECT_THAT(ProblemOf("d (nil () (on a b)) ()").warnings, IsEmpty());
+}
+
+TEST(Shop2ProblemTest, SeveralPairsOfFactsAndTasksAreSeveralProblems) {
+  for (const std::string head : {"(defproblem p d ", "(defproblem (p :domain d) "}) {
+    const auto problems =
+        ReadShop2Problems(head + "((f 1)) ((t1)) () ((t2)) nil nil ((f 2)) (t1))", "f.lisp");
+    ASSERT_THAT(problems, SizeIs(4)) << head;
+    const std::vector<std::string> names{"p", "p-2", "p-3", "p-4"};
+    for (std::size_t i = 0; i < problems.size(); ++i) {
+      EXPECT_EQ(problems[i].name, names[i]);
+      EXPECT_EQ(problems[i].domain, "d");
+    }
+    EXPECT_EQ(Outline(problems[1].tasks), "{(t2)}");
+    EXPECT_THAT(problems[2].tasks.items, IsEmpty());
+    EXPECT_EQ(ToString(problems[3].facts.at(0)), "(f 2)");
+  }
+}
+
+TEST(Shop2ProblemTest, OneThatIsWrongIsNoHarmToTheOthers) {
+  const auto problems = ReadShop2Problems(
+      "(defproblem p1 d ((at ?x)) ((t1)))\n(defproblem p2 d () ((t1)))\n"
+      "(defproblem)\n(defproblem p4 d () (:task))",
+      "f.lisp");
+  ASSERT_THAT(problems, SizeIs(4));
+  EXPECT_THAT(problems[0].fault, AllOf(HasSubstr("f.lisp:1:19"), HasSubstr("problem 'p1'")));
+  EXPECT_EQ(problems[1].fault, "");
+  EXPECT_THAT(problems[2].fault, HasSubstr("f.lisp:3:1"));
+  EXPECT_THAT(problems[3].fault, HasSubstr("f.lisp:4:21"));
+}
+
+TEST(Shop2ProblemTest, WhereAllAreWrongAllAreTold) {
+  const auto error = hires::test_support::ConfigErrorOf([] {
+    ReadShop2Problems("(defproblem p1 d ((at ?x)) ())\n(defproblem p2 d (at) ())", "f.lisp");
+  });
+  EXPECT_THAT(error, AllOf(HasSubstr("f.lisp:1:19"), HasSubstr("f.lisp:2:18")));
+}
+
 TEST(Shop2ProblemTest, AFileMayHoldDomainAndProblems) {
   const char* const text =
       "(defdomain d ((:method (t1 ?x) () ())))\n"
@@ -389,6 +446,131 @@ TEST(Shop2ProblemTest, AFileMayHoldDomainAndProblems) {
   EXPECT_EQ(problems[1].name, "p2");
   EXPECT_THAT(problems[1].tasks.order, IsEmpty());
   for (const Problem& problem : problems) EXPECT_NO_THROW(CheckTasks(problem, domain));
+}
+
+// ------------------------------------------------------------------------------ JSHOP2's terms
+
+TEST(BareTermsTest, StandForThemselvesWhereCallAloneComputes) {
+  const std::string call = "(call < ?x 3)";
+  const auto outline = [&](const std::string& goal) { return OutlineOf("(" + call + goal + ")"); };
+  const std::string begin = "seq[eval=(< ?x 3) ";
+  EXPECT_EQ(outline("(call Member ?y (red green blue))"),
+            begin + "eval=(member ?y (list (quote red) (quote green) (quote blue)))]");
+  EXPECT_EQ(outline("(assign ?p (home ?y))"), begin + "assign?p=(list (quote home) ?y)]");
+  EXPECT_EQ(outline("(assign ?p fragile)"), begin + "assign?p=(quote fragile)]");
+  EXPECT_EQ(outline("(assign ?p (12 (call / 12 (call + 5 1)) (?x . (a . ?r)) \"s\" nil))"),
+            begin + "assign?p=(list 12 (/ 12 (+ 5 1)) (list* ?x (quote a) ?r) \"s\" nil)]");
+  EXPECT_EQ(outline("(not (call Member (call * 2 2) (2 (call + 1 3) 5)))"),
+            begin + "not[eval=(member (* 2 2) (list 2 (+ 1 3) 5))]]");
+}
+
+TEST(BareTermsTest, WhereLispComputesNothingChanges) {
+  for (const std::string goal :
+       {"(assign ?p (- ?x 1))", "(call > (length ?x) 3)", "(call member ?x '(red))",
+        "(eval (< ?x 3))", "(assign ?p (f (first ?x)))", "(call #'f ?x)"}) {
+    const std::string expected = OutlineOf("((assign ?q (home ?y)) " + goal + ")");
+    EXPECT_THAT(expected, HasSubstr("assign?q=(home ?y)")) << goal;
+  }
+  EXPECT_EQ(OutlineOf("((assign ?q (home ?y)))"), "seq[assign?q=(home ?y)]") << "nothing is called";
+  const std::string domain =
+      "(defdomain d ((:method (m ?x) ((call < ?x 3) (assign ?q (home ?x))) ())))";
+  for (const std::string form : {"(defun home (x) x)", "(in-package :x)", "(progn)"}) {
+    const Domain read = ReadShop2Domain(form + domain, "f.lisp");
+    EXPECT_THAT(Outline(read.methods[0].branches[0].precondition.condition),
+                HasSubstr("assign?q=(home ?x)"))
+        << form;
+  }
+}
+
+TEST(BareTermsTest, AListThatLooksLikeACallIsWarnedOfOnce) {
+  const auto warnings = [](const std::string& goals) {
+    return DomainOf("(:method (m ?x)\n((call < ?x 3) " + goals + ") ())").warnings;
+  };
+  EXPECT_THAT(warnings("(assign ?p (home ?x)) (assign ?q (shop ?x))"),
+              ElementsAre(AllOf(HasSubstr("test.lisp:2:27: "), HasSubstr("(home ?x)"),
+                                HasSubstr("JSHOP2"), HasSubstr("write (call home ...)"))));
+  EXPECT_THAT(warnings("(assign ?p red) (assign ?q (1 ?x))"), IsEmpty());
+}
+
+// ------------------------------------------------------------------------------ other forms
+
+constexpr const char* kWholeDomain = "(defdomain d ((:method (t1 ?x) () ())))\n";
+constexpr const char* kWholeProblem = "(defproblem p d ((f 1)) ((t1 a)))\n";
+
+void ExpectWhole(const std::string& text) {
+  EXPECT_THAT(ReadShop2Domain(text, "f.lisp").methods, SizeIs(1)) << text;
+  const std::vector<Problem> problems = ReadShop2Problems(text, "f.lisp");
+  ASSERT_THAT(problems, SizeIs(1)) << text;
+  EXPECT_THAT(problems[0].facts, SizeIs(1)) << text;
+  EXPECT_TRUE(IsShop2File(text, "f.lisp")) << text;
+}
+
+TEST(OtherFormsTest, FormsOfLispAroundDomainAndProblemArePassedOverWithOneWarning) {
+  for (const std::string form :
+       {"(find-plans 'p :which :first :verbose :plans)", "(progn (ql:quickload :shop3))",
+        "(declaim (optimize (speed 3)))", "(defun cost (a &optional b) `(list ,a ,@b))",
+        "(defun f (c) (member c '(#\\( #\\Space #\\; #\\\")))", "(defvar *v* #(1 2 #x1F))",
+        "(setf *p* #p\"a/b\" *q* #.(list 1))", "(eval-when (:load-toplevel) (load \"x\"))",
+        "(defmacro m (&body body) #+sbcl nil #-sbcl `(progn ,@body))"}) {
+    for (const std::string& text :
+         {form + "\n" + kWholeDomain + kWholeProblem, kWholeDomain + form + "\n" + kWholeProblem,
+          std::string(kWholeDomain) + kWholeProblem + form}) {
+      ExpectWhole(text);
+      EXPECT_THAT(ReadShop2Domain(text, "f.lisp").warnings,
+                  Contains(AllOf(HasSubstr("f.lisp:"), HasSubstr("passed over"))))
+          << text;
+    }
+  }
+}
+
+TEST(OtherFormsTest, TheWarningTellsNamesAndLines) {
+  const std::string text =
+      std::string("(ql:quickload :shop)\n") + kWholeDomain + "(find-plans 'p)\n(find-plans 'q)";
+  EXPECT_THAT(
+      ReadShop2Domain(text, "f.lisp").warnings,
+      ElementsAre(AllOf(HasSubstr("f.lisp:1:1: "), HasSubstr("(ql:quickload ...) in line 1"),
+                        HasSubstr("(find-plans ...) in lines 3, 4"))));
+  std::string many;
+  for (int i = 0; i < 100; ++i) many += "(f" + std::to_string(i) + ") ";
+  const Domain domain = ReadShop2Domain(many + kWholeDomain, "f.lisp");
+  ASSERT_THAT(domain.warnings, SizeIs(1));
+  EXPECT_LT(domain.warnings[0].size(), 500u);
+  EXPECT_THAT(domain.warnings[0], HasSubstr("92 more"));
+}
+
+TEST(OtherFormsTest, DefinitionsMayStandInAFormAndHavePackages) {
+  const std::string both = std::string(kWholeDomain) + kWholeProblem;
+  for (const std::string& text :
+       {"(progn\n" + both + ")", "(let ((x 1)) " + both + ")", "(let* () (progn " + both + "))",
+        "(eval-when (:compile-toplevel :load-toplevel :execute) " + both + ")",
+        "(locally (declare (ignore x)) " + both + ")",
+        std::string("(cl:in-package #:shop-user) (shop2:") + (kWholeDomain + 1) +
+            "(shop2::" + (kWholeProblem + 1)}) {
+    ExpectWhole(text);
+  }
+  EXPECT_THAT(ReadShop2Domain("(cl:in-package :x)" + both, "f.lisp").warnings, IsEmpty());
+}
+
+TEST(OtherFormsTest, MarksOfTheReaderAreHeeded) {
+  const std::string both = std::string(kWholeDomain) + kWholeProblem;
+  for (const std::string mark :
+       {"#+ignore", "#+(or)", "#+(or sbcl ccl)", "#-(not x)", "#+(and shop)", "#+#.x"}) {
+    for (const std::string form :
+         {"(defproblem q d () ())", "((:method (x) () ()))", "'a", "(#\\( ,@x)"}) {
+      const std::string text = mark + " " + form + "\n" + both;
+      ExpectWhole(text);
+      EXPECT_THAT(ReadShop2Domain(text, "f.lisp").warnings,
+                  ElementsAre(AllOf(HasSubstr("f.lisp:1:1: left out"), HasSubstr("line 1"))));
+    }
+  }
+  for (const std::string mark : {"#-x", "#-(or)", "#+(not x)", "#+(and)"}) {
+    const std::string text = mark + " " + both;
+    ExpectWhole(text);
+    EXPECT_THAT(ReadShop2Domain(text, "f.lisp").warnings, ElementsAre(HasSubstr("read, as no")));
+  }
+  const Problem problem = ProblemOf("d ((f #:One) #+x (g 2) #+x #+y (h 3) (i 4) (f 5)) ()");
+  EXPECT_THAT(problem.facts, SizeIs(2)) << "#+x #+y leaves out both";
+  EXPECT_EQ(ToString(problem.facts[0]), "(f one)");
 }
 
 // ------------------------------------------------------------------------------------ original

@@ -5,6 +5,7 @@
 
 #include <filesystem>
 
+#include "hires/planning/plan_report.h"
 #include "hires/planning/planner.h"
 #include "hires/planning/planning_files.h"
 #include "hires/planning/request.h"
@@ -89,6 +90,22 @@ TEST(UnknownNamesTest, AProblemsOwnTasksHaveToExist) {
 
 // ------------------------------------------------------------------------- predicates, misspelt
 
+TEST(UnknownNamesTest, ATaskThatFitsTheHeadOfNoMethodIsNamed) {
+  const Domain domain = ReadShop2Domain(
+      "(defdomain d ((:operator (!go ?r) () () ()) (:method (leave r1 home) () ((!go r1)))\n"
+      " (:method (leave r1 shop) () ((!go r1)))))",
+      "d.lisp");
+  const Problem problem =
+      ReadShop2Problems("(defproblem p d ((at r1)) ((leave k\xC3\x84se home)))", "p.lisp").front();
+  PlanRequest request;
+  request.explain = true;
+  const PlanResult result = FindPlans(domain, problem, request);
+  EXPECT_EQ(result.outcome, PlanOutcome::kNoPlan);
+  EXPECT_THAT(OutcomeSentence(result, Which::kFirst),
+              AllOf(HasSubstr("it got as far as (leave k\xC3\x84se home): its arguments fit"),
+                    HasSubstr("neither a fact nor the domain knows 'k\xC3\x84se'")));
+}
+
 constexpr char kCups[] = R"((defdomain cups (
 (:operator (!take ?cup) ((emty ?hand)) ((empty ?hand)) ((holds ?hand ?cup)))
 (:operator (!drop ?cup) ((holds ?hand ?cup) (not (imagined_failure take))) () ((empty ?hand)))
@@ -111,6 +128,19 @@ TEST(MisspeltPredicatesTest, WhatNothingCanEverGiveIsNamedWithItsPlaceAndWhatIsM
 
 TEST(MisspeltPredicatesTest, WhatTheStateOrAnEffectGivesIsSpeltAsItIsMeant) {
   EXPECT_THAT(MisspeltWith("((emty left) (hold left mug))"), IsEmpty());
+}
+
+TEST(MisspeltPredicatesTest, AFactThatNothingHasToDoWithIsNamedWithWhatIsMeant) {
+  const std::string right = "(empty left) (emty right) (hold right mug) ";
+  EXPECT_THAT(MisspeltWith("(" + right + "(holdss left cup) (holdss left mug) (unheard of))"),
+              ElementsAre(AllOf(HasSubstr("p.lisp:1:"), HasSubstr("problem 'p'"),
+                                HasSubstr("(holdss ...)"), HasSubstr("did you mean 'hold"))));
+  EXPECT_THAT(MisspeltWith("(" + right + "(holds left mug) (free right))"), IsEmpty());
+  const Domain any_goal = ReadShop2Domain(
+      "(defdomain d ((:method (m ?goal) (?goal (holds ?x)) ()) (:operator (!o) () ((holds a)))))",
+      "d.lisp");
+  const Problem problem = ReadShop2Problems("(defproblem p d ((hold a)) ())", "p.lisp").front();
+  EXPECT_THAT(MisspeltPredicates(any_goal, problem), IsEmpty()) << "a variable may ask for it";
 }
 
 TEST(MisspeltPredicatesTest, AVariableThatIsAddedMayBeAnything) {

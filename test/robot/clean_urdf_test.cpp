@@ -130,6 +130,147 @@ TEST(CleanUrdfTest, FloatingPlanarAndUnlimitedJointsAreToldByKind) {
   EXPECT_THAT(log.lines[1], AllOf(HasSubstr("held_at_0=j3,j4"), HasSubstr("line 4")));
 }
 
+/// A joint as files have it, its range, and the key of the warning that tells of it.
+struct JointKind {
+  const char* type;
+  const char* inside;
+  std::string key;  ///< "": it is as it should be
+  JointType becomes;
+  double lower, upper;
+};
+
+TEST(CleanUrdfTest, JointsThatNoDriveNeedsRefuseNoRobotAndAreToldByKind) {
+  const std::vector<JointKind> all{
+      {"revolute", "<limit lower='-1' upper='2' effort='1' velocity='3'/>", "",
+       JointType::kRevolute, -1.0, 2.0},
+      {"revolute", "<limit lower='0' upper='-1.5' effort='1' velocity='3'/>", "limits_swapped",
+       JointType::kRevolute, -1.5, 0.0},
+      {"prismatic", "<limit lower='0.5' effort='1' velocity='3'/>", "limits_swapped",
+       JointType::kPrismatic, 0.0, 0.5},
+      {"revolute", "<limit lower='-inf' upper=' +Inf ' effort='1' velocity='3'/>", "without_end",
+       JointType::kContinuous, -1e16, 1e16},
+      {"prismatic", "<limit lower='-inf' upper='2' effort='1' velocity='3'/>", "without_end",
+       JointType::kPrismatic, -1e16, 2.0},
+      {"revolute", "<limit lower='-1e16' upper='1e16' effort='1' velocity='3'/>", "",
+       JointType::kContinuous, -1e16, 1e16},
+      {"revolute", "<limit lower='-6.28' upper='1e16' effort='1' velocity='3'/>", "",
+       JointType::kRevolute, -6.28, 1e16},
+      {"revolute", "<limit lower='-pi' upper='pi' effort='1' velocity='3'/>", "unreadable_limits",
+       JointType::kRevolute, 0.0, 0.0},
+      {"prismatic", "<limit lower='' upper='1' effort='1' velocity='3'/>", "unreadable_limits",
+       JointType::kPrismatic, 0.0, 0.0},
+      {"revolute", "<limit lower='0' upper='nan' effort='1' velocity='3'/>", "unreadable_limits",
+       JointType::kRevolute, 0.0, 0.0},
+      {"revolute", "<limit lower='-1' upper='1' effort='-1' velocity='-1'/>", "unusable_limits",
+       JointType::kRevolute, -1.0, 1.0},
+      {"revolute", "<limit lower='-1' upper='1' effort='' velocity='fast'/>", "unusable_limits",
+       JointType::kRevolute, -1.0, 1.0},
+      {"continuous", "<limit lower='1' upper='-1' effort='1' velocity='3'/>", "",
+       JointType::kContinuous, 0.0, 0.0},
+      {"continuous", "<limit lower='-inf' upper='inf' effort='1' velocity='3'/>", "",
+       JointType::kContinuous, 0.0, 0.0},
+      {"continuous", "<axis xyz='0 0 0'/>", "without_axis", JointType::kFixed, 0.0, 0.0},
+      {"revolute", "<axis/><limit lower='-1' upper='1' effort='1' velocity='3'/>", "without_axis",
+       JointType::kFixed, 0.0, 0.0},
+      {"fixed", "<axis xyz='up'/><limit lower='low'/><mimic joint='nobody' offset='x'/>", "",
+       JointType::kFixed, 0.0, 0.0},
+      {"floating", "<axis xyz=''/><limit effort=''/>", "taken_as_fixed", JointType::kFixed, 0.0,
+       0.0}};
+  base::Rng rng(41);
+  for (int round = 0; round < Rounds(200); ++round) {
+    std::string xml = "<robot name='r'>\n<link name='base'/>\n";
+    std::map<std::string, std::vector<std::string>> told;  // by key
+    std::vector<const JointKind*> drawn;
+    for (int i = 0, number = 1 + rng.Index(6); i < number; ++i) {
+      drawn.push_back(&all[rng.Index(static_cast<int>(all.size()))]);
+      xml += fmt::format(
+          "<link name='l{0}'/><joint name='j{0}' type='{1}'><parent link='base'/><child "
+          "link='l{0}'/>{2}</joint>\n",
+          i, drawn[i]->type, drawn[i]->inside);
+      if (!drawn[i]->key.empty()) told[drawn[i]->key].push_back(fmt::format("j{}", i));
+    }
+    const LogCatcher log(base::LogLevel::kWarn);
+    const RobotModel model = ParseRobotModel(xml + "</robot>", "r.urdf");
+    EXPECT_THAT(log.lines, SizeIs(told.size())) << xml;
+    for (const auto& [key, names] : told) {
+      EXPECT_THAT(log.lines, Contains(AllOf(HasSubstr(key + "=" + base::Join(names, ",") + " "),
+                                            HasSubstr("first=\"line "))))
+          << xml;
+    }
+    for (std::size_t i = 0; i < drawn.size(); ++i) {
+      const Joint& joint = *FindJoint(model, fmt::format("j{}", i));
+      EXPECT_EQ(joint.type, drawn[i]->becomes) << drawn[i]->inside;
+      EXPECT_EQ(joint.limits.has_value(), joint.type != JointType::kFixed) << drawn[i]->inside;
+      if (!joint.limits) continue;
+      EXPECT_EQ(joint.limits->lower, drawn[i]->lower) << drawn[i]->inside;
+      EXPECT_EQ(joint.limits->upper, drawn[i]->upper) << drawn[i]->inside;
+      EXPECT_EQ(joint.limits->velocity, drawn[i]->key == "unusable_limits" ? 0.0 : 3.0);
+    }
+  }
+}
+
+TEST(CleanUrdfTest, ChainsOfFollowersLeadToTheJointThatLeads) {
+  const auto joint = [](int i, const std::string& type, const std::string& mimic) {
+    return fmt::format(
+        "<link name='l{0}'/><joint name='j{0}' type='{1}'><parent link='base'/><child link='l{0}'/>"
+        "<axis xyz='0 0 1'/><limit lower='-9' upper='9' effort='1' velocity='1'/>{2}</joint>\n",
+        i, type, mimic);
+  };
+  const auto follow = [](int leader, double multiplier, double offset) {
+    return fmt::format("<mimic joint='j{}' multiplier='{}' offset='{}'/>", leader, multiplier,
+                       offset);
+  };
+  base::Rng rng(43);
+  for (int round = 0; round < Rounds(100); ++round) {
+    const int number = 2 + rng.Index(5);
+    const bool is_led = rng.Bernoulli(0.5);  // by a joint that moves
+    const double led = is_led ? rng.Uniform(-1.0, 1.0) : 0.0;
+    std::string xml =
+        "<robot name='r'>\n<link name='base'/>\n" + joint(0, is_led ? "prismatic" : "fixed", "");
+    std::vector<double> wanted{led};
+    for (int i = 1; i < number; ++i) {
+      const double multiplier = rng.Uniform(-1.1, 1.1), offset = rng.Uniform(-0.2, 0.2);
+      xml += joint(i, "prismatic", follow(i - 1, multiplier, offset));
+      wanted.push_back(multiplier * wanted.back() + offset);
+    }
+    const LogCatcher log(base::LogLevel::kWarn);
+    const RobotModel model = ParseRobotModel(xml + "</robot>", "r.urdf");
+    EXPECT_THAT(log.lines, SizeIs(is_led ? 0 : 1)) << xml;
+    const auto X_R =
+        ForwardKinematics(model, is_led ? JointPositions{{"j0", led}} : JointPositions{});
+    for (int i = 0; i < number; ++i) {
+      EXPECT_NEAR(X_R[*model.FindLink(fmt::format("l{}", i))].translation.z(), wanted[i], 1e-9)
+          << i << xml;
+    }
+  }
+}
+
+TEST(CleanUrdfTest, FollowersOfThemselvesAreHeldAndThoseOutOfTheirLimitsAreTold) {
+  const auto joint = [](const char* name, const char* limit, const char* mimic) {
+    return fmt::format(
+        "<link name='l_{0}'/><joint name='{0}' type='revolute'><parent link='base'/><child "
+        "link='l_{0}'/><axis xyz='0 1 0'/><limit {1} effort='1' velocity='1'/>{2}</joint>\n",
+        name, limit, mimic);
+  };
+  const char* wide = "lower='-2' upper='2'";
+  const LogCatcher log(base::LogLevel::kWarn);
+  const RobotModel model = ParseRobotModel(
+      "<robot name='r'>\n<link name='base'/>\n" +
+          joint("self", wide, "<mimic joint='self' offset='1'/>") +
+          joint("a", wide, "<mimic joint='b'/>") + joint("b", wide, "<mimic joint='a'/>") +
+          joint("lead", "lower='0.2' upper='0.8'", "") +
+          joint("out", "lower='0' upper='0.8'", "<mimic joint='lead' multiplier='-1'/>") +
+          "</robot>",
+      "r.urdf");
+  for (const char* name : {"self", "a", "b"})
+    EXPECT_EQ(FindJoint(model, name)->type, JointType::kFixed) << name;
+  EXPECT_NO_THROW(ForwardKinematics(model, {}));
+  EXPECT_THAT(log.lines,
+              ::testing::ElementsAre(
+                  AllOf(HasSubstr("follow_nothing_that_moves=a,b,self "), HasSubstr("line 4")),
+                  AllOf(HasSubstr("stopped_at_limits=out "), HasSubstr("line 7"))));
+}
+
 TEST(CleanUrdfTest, ACapsuleReachesAsFarAsItShould) {
   base::Rng rng(3);
   for (int round = 0; round < Rounds(100); ++round) {

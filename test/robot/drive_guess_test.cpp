@@ -21,9 +21,10 @@ std::string Turning(const std::string& name, const std::string& parent, const st
       name, parent, axis);
 }
 
-DriveGuess GuessFor(const std::string& wheels) {
+DriveGuess GuessFor(const std::string& wheels, const std::string& base_link = "base") {
   return GuessDrive(
-      ParseRobotModel("<robot name=\"r\"><link name=\"base\"/>" + wheels + "</robot>", "r.urdf"));
+      ParseRobotModel("<robot name=\"r\"><link name=\"base\"/>" + wheels + "</robot>", "r.urdf"),
+      base_link);
 }
 
 /// A wheel on an arm that swivels.
@@ -36,6 +37,18 @@ TEST(DriveGuessTest, TwoParallelWheelsAreDifferential) {
       GuessFor(Turning("left", "base", "0 1 0") + Turning("right", "base", "0 -1 0"));
   EXPECT_EQ(guess.drive, Drive::kDifferential);
   EXPECT_THAT(guess.why, HasSubstr("left_joint, right_joint"));
+}
+
+TEST(DriveGuessTest, WheelsThatMayTurnOnAndOnAreWheelsWhateverTheirTypeIsCalled) {
+  const auto wheel = [](const char* name, const char* limits) {
+    return fmt::format(
+        R"(<joint name="{0}" type="revolute"><parent link="base"/><child link="{0}_l"/><axis xyz="0 1 0"/><limit {1} effort="1" velocity="1"/></joint><link name="{0}_l"/>)",
+        name, limits);
+  };
+  for (const char* limits : {R"(lower="-1e16" upper="1e16")", R"(lower="-inf" upper="inf")"})
+    EXPECT_THAT(GuessFor(wheel("l", limits) + wheel("r", limits)).why, HasSubstr("wheels: l, r"));
+  const char* narrow = R"(lower="-1" upper="1")";
+  EXPECT_THAT(GuessFor(wheel("l", narrow) + wheel("r", narrow)).why, HasSubstr("no wheels"));
 }
 
 TEST(DriveGuessTest, SwivelCastersBesideDrivenWheelsChangeNothing) {
@@ -93,6 +106,55 @@ TEST(DriveGuessTest, ACarWhoseRootIsNotOverItsAxleIsToldSo) {
   EXPECT_THAT(GuessFor(kRearWheels + steered).why, Not(HasSubstr("base_link")));
 }
 
+/// A wheel somewhere on the base.
+std::string WheelAt(const std::string& name, double x, double y, const std::string& axis,
+                    double z = 0.1) {
+  return fmt::format(
+      R"(<joint name="{0}" type="continuous"><origin xyz="{1} {2} {4}"/><parent link="base"/><child link="{0}_link"/><axis xyz="{3}"/></joint><link name="{0}_link"/>)",
+      name, x, y, axis, z);
+}
+
+/// A link that is fixed to the base, turned by `yaw`.
+std::string LinkAt(const std::string& name, double x, double yaw) {
+  return fmt::format(
+      R"(<joint name="{0}_j" type="fixed"><origin xyz="{1} 0 0" rpy="0 0 {2}"/><parent link="base"/><child link="{0}"/></joint><link name="{0}"/>)",
+      name, x, yaw);
+}
+
+TEST(DriveGuessTest, ADifferentialRobotIsToldOfAnAxleThatIsNotBelowItsBase) {
+  for (const double x : {-0.35, -0.06, -0.04, 0.0, 0.04, 0.06, 0.35}) {
+    const std::string wheels = WheelAt("l", x, 0.2, "0 1 0") + WheelAt("r", x, -0.2, "0 -1 0");
+    const DriveGuess guess = GuessFor(wheels);
+    EXPECT_EQ(guess.drive, Drive::kDifferential);
+    EXPECT_EQ(guess.misfit.empty(), std::abs(x) < 0.05) << x << guess.misfit;
+    EXPECT_EQ(GuessFor(wheels + LinkAt("axle", x, 0.0), "axle").misfit, "") << x;
+    const DriveGuess four =
+        GuessFor(wheels + WheelAt("fl", -x, 0.2, "0 1 0") + WheelAt("fr", -x, -0.2, "0 1 0"));
+    EXPECT_EQ(four.misfit, "") << "it turns about the middle of all four";
+  }
+  const DriveGuess rear =
+      GuessFor(WheelAt("l", -0.35, 0.2, "0 1 0") + WheelAt("r", -0.35, -0.2, "0 1 0") +
+               WheelAt("fan", 0.35, 0.0, "0 1 0", 1.0));
+  EXPECT_THAT(rear.why,
+              AllOf(HasSubstr("parallel wheels: "), HasSubstr("; but the axle lies at x -0.35 m"),
+                    HasSubstr("of 'base'"), HasSubstr("base_link")));
+}
+
+TEST(DriveGuessTest, ARobotWhoseWheelsRollAsideOfXIsToldSo) {
+  for (const double angle : {0.0, 0.1, 0.5, 1.0, 0.5 * M_PI, 2.0, M_PI}) {
+    const std::string axis = fmt::format("{} {} 0", std::sin(angle), std::cos(angle));
+    const std::string wheels = WheelAt("l", 0.2 * std::sin(angle), 0.2 * std::cos(angle), axis) +
+                               WheelAt("r", -0.2 * std::sin(angle), -0.2 * std::cos(angle), axis);
+    const DriveGuess guess = GuessFor(wheels);
+    const bool is_askew = std::abs(std::sin(angle)) > 0.2;
+    EXPECT_EQ(guess.misfit.empty(), !is_askew) << angle << guess.misfit;
+    EXPECT_EQ(guess.why.find("degrees off the x axis") != std::string::npos, is_askew) << guess.why;
+    EXPECT_EQ(GuessFor(wheels + LinkAt("ahead", 0.0, -angle), "ahead").misfit, "") << angle;
+  }
+  const std::string along_y = WheelAt("l", -0.2, 0.0, "1 0 0") + WheelAt("r", 0.2, 0.0, "1 0 0");
+  EXPECT_THAT(GuessFor(along_y).why, HasSubstr("; but its wheels roll 90 degrees off the x axis"));
+}
+
 TEST(DriveGuessTest, ThreeWheelsInThreeDirectionsDriveAnywhere) {
   EXPECT_EQ(GuessFor(Turning("a", "base", "1 0 0") + Turning("b", "base", "-0.5 0.866 0") +
                      Turning("c", "base", "-0.5 -0.866 0"))
@@ -107,7 +169,7 @@ TEST(DriveGuessTest, WithoutWheelsItIsTheOneThatEveryBaseCanDo) {
 
 TEST(DriveGuessTest, APr2DrivesAnywhere) {
   const RobotModel pr2 = LoadRobotModel(std::string(HIRES_SOURCE_DIR) + "/urdf/pr2_tray.urdf");
-  EXPECT_EQ(GuessDrive(pr2).drive, Drive::kOmnidirectional);
+  EXPECT_EQ(GuessDrive(pr2, pr2.links.front().name).drive, Drive::kOmnidirectional);
 }
 
 }  // namespace

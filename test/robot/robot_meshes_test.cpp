@@ -86,6 +86,53 @@ TEST_F(RobotMeshes, PackageThatHoldsTheUrdf) {
   EXPECT_EQ(MeshOf(LoadRobotModel(urdf))->triangles.size(), 1u);
 }
 
+TEST_F(RobotMeshes, SeveralSlashesAreOne) {
+  folder_.Write("arm_description/package.xml", "<package/>");
+  folder_.Write("arm_description/meshes/hand.obj", kTriangle);
+  SetPackagePath(folder_.path().string());
+  for (const char* inside : {"//meshes/hand.obj", "///meshes//hand.obj", "/meshes//./hand.obj"}) {
+    const std::string urdf = UrdfWith(std::string("package://arm_description") + inside);
+    EXPECT_EQ(MeshOf(ParseRobotModel(urdf, "r.urdf"))->triangles.size(), 1u) << inside;
+  }
+  for (const char* none : {"", "/", "//", "//../secret.obj", "/meshes/../../secret.obj"}) {
+    const std::string urdf = UrdfWith(std::string("package://arm_description") + none);
+    EXPECT_THAT([&] { ParseRobotModel(urdf, "r.urdf"); },
+                ThrowsMessage<base::ConfigError>(HasSubstr("no file inside a package")))
+        << none;
+  }
+}
+
+TEST_F(RobotMeshes, AModelIsFoundAsWorldsFindItOrAsAPackage) {
+  const std::string text = UrdfWith("model://arm/meshes/hand.obj");
+  EXPECT_EQ(::unsetenv("GAZEBO_MODEL_PATH"), 0);
+  for (const char* urdf : {"beside/r.urdf", "models_beside/r.urdf", "above/urdf/r.urdf",
+                           "itself/arm/urdf/r.urdf", "package/r.urdf", "variable/r.urdf"})
+    folder_.Write(urdf, text);
+  for (const char* mesh : {"beside/arm/meshes/hand.obj", "models_beside/models/arm/meshes/hand.obj",
+                           "above/models/arm/meshes/hand.obj", "itself/arm/meshes/hand.obj",
+                           "packages/arm/meshes/hand.obj", "gazebo/arm/meshes/hand.obj"})
+    folder_.Write(mesh, kTriangle);
+  folder_.Write("packages/arm/package.xml", "<package/>");
+  const auto load = [&](const char* urdf) {
+    return MeshOf(LoadRobotModel((folder_.path() / urdf).string()))->triangles.size();
+  };
+  for (const char* urdf :
+       {"beside/r.urdf", "models_beside/r.urdf", "above/urdf/r.urdf", "itself/arm/urdf/r.urdf"})
+    EXPECT_EQ(load(urdf), 1u) << urdf;
+  EXPECT_THAT([&] { load("variable/r.urdf"); },
+              ThrowsMessage<base::ConfigError>(
+                  AllOf(HasSubstr("'model://arm/meshes/hand.obj' is not there"),
+                        HasSubstr("GAZEBO_MODEL_PATH"), HasSubstr("line 2"))));
+  SetPackagePath((folder_.path() / "packages").string());
+  EXPECT_EQ(load("package/r.urdf"), 1u);
+  ::unsetenv("ROS_PACKAGE_PATH");
+  ::setenv("GAZEBO_MODEL_PATH", (folder_.path() / "gazebo").c_str(), 1);
+  EXPECT_EQ(load("variable/r.urdf"), 1u);
+  ::unsetenv("GAZEBO_MODEL_PATH");
+  EXPECT_THAT([&] { ParseRobotModel(UrdfWith("model://../secret.obj"), "r.urdf"); },
+              ThrowsMessage<base::ConfigError>(HasSubstr("names no file inside a model")));
+}
+
 TEST_F(RobotMeshes, MissingFileNamesLinkAndPlace) {
   const std::string urdf = folder_.Write("r.urdf", UrdfWith("meshes/none.stl"));
   EXPECT_THAT([&] { LoadRobotModel(urdf); },

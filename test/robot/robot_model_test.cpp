@@ -2,11 +2,13 @@
 
 #include <gmock/gmock.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "hires/base/error.h"
 #include "hires/base/rng.h"
 #include "hires/geometry/angles.h"
+#include "support/log_catcher.h"
 
 namespace hires::robot::robot_model_test {
 namespace {
@@ -156,15 +158,47 @@ TEST(ForwardKinematics, RefusesPositionsOutsideTheLimits) {
   EXPECT_THROW(ForwardKinematics(model, {{"wheel", NAN}}), base::ConfigError);
 }
 
-TEST(ForwardKinematics, RefusesALeaderThatPushesItsFollowerOut) {
+TEST(ForwardKinematics, AFollowerStopsAtItsLimits) {
   std::string xml = kRobot;
   xml.replace(xml.find("multiplier=\"-0.5\""), 17, "multiplier=\"-1.5\"");
   const RobotModel model = ParseRobotModel(xml, "small.urdf");
-  EXPECT_THAT(
-      [&] {
-        ForwardKinematics(model, {{"arm", 1.1}});
-      },
-      ThrowsMessage<base::ConfigError>(HasSubstr("'finger' (follows 'arm') is at")));
+  const geometry::Pose3 X_AFAtZero =
+      PoseOf(Small(), "arm", {}).Inverse() * PoseOf(Small(), "finger", {{"arm", 0.0}});
+  base::Rng rng(5);
+  for (int round = 0; round < 100; ++round) {
+    const double arm = rng.Uniform(-1.0, 1.2);
+    const double turned = std::clamp(-1.5 * arm + 0.25, -1.0, 1.0) - 0.25;
+    const auto X_R = ForwardKinematics(model, {{"arm", arm}});
+    const geometry::Pose3 X_AF =
+        X_R[*model.FindLink("arm")].Inverse() * X_R[*model.FindLink("finger")];
+    const geometry::Pose3 wanted =
+        X_AFAtZero *
+        geometry::Pose3{Eigen::Vector3d::Zero(),
+                        Eigen::Quaterniond(Eigen::AngleAxisd(turned, Eigen::Vector3d::UnitY()))};
+    EXPECT_LT(X_AF.rotation.angularDistance(wanted.rotation), 1e-9) << arm;
+    EXPECT_LT((X_AF.translation - wanted.translation).norm(), 1e-9) << arm;
+  }
+}
+
+TEST(ParseRobotModel, AnInfiniteFrictionIsALargeOneAndIsTold) {
+  const auto friction_of = [](const std::string& mu) {
+    return ParseRobotModel(
+               "<robot name='r'>\n<link name='a'><collision><geometry><sphere radius='1'/>"
+               "</geometry></collision></link>\n<gazebo reference='a'>" +
+                   mu + "</gazebo></robot>",
+               "r.urdf")
+        .links[0]
+        .collisions[0]
+        .friction;
+  };
+  for (const char* mu : {"<mu1>inf</mu1>", "<mu1>Infinity</mu1><mu2>+inf</mu2>",
+                         "<mu2 value='inf'/>", "<mu1>-1</mu1>"}) {
+    const hires::test_support::LogCatcher log(base::LogLevel::kWarn);
+    EXPECT_EQ(friction_of(mu), 1000.0) << mu;
+    EXPECT_THAT(log.lines, ::testing::ElementsAre(HasSubstr("endless_friction=a "))) << mu;
+  }
+  EXPECT_EQ(friction_of("<mu1>inf</mu1><mu2>0.5</mu2>"), 0.5);
+  EXPECT_THROW(friction_of("<mu1>nan</mu1>"), base::ConfigError);
 }
 
 TEST(ForwardKinematics, RefusesJointsThatCannotBeSet) {

@@ -397,6 +397,43 @@ TEST_F(RobotProfileFile, RefusesBadFootprints) {
   ExpectRefused("{x: 0.4, y: 0.3}", "{x: far, y: 0.3}", {"footprint[0].x is 'far'"});
 }
 
+TEST_F(RobotProfileFile, AFootprintIsCornersOrPairsAsMoveBaseHasThem) {
+  const std::string corners = "[{x: 0.4, y: 0.3}, {x: 0.4, y: -0.3}, {x: -0.2, y: -0.3}, ";
+  const std::string from = corners + "{x: -0.2, y: 0.3}]";
+  const std::string pairs = "[[0.4, 0.3], [0.4, -0.3], [-0.2, -0.3], [-0.2, 0.3]]";
+  const Robot wanted = LoadRobot(Write(kProfile));
+  for (const std::string& to : {pairs, "\"" + pairs + "\"",
+                                std::string("\n- [0.4, 0.3]\n- [0.4, "
+                                            "-0.3]\n- [-0.2, -0.3]\n- [-0.2, 0.3]")}) {
+    const Robot robot = LoadRobot(WriteWith(from, to));
+    EXPECT_EQ(robot.profile.footprint, wanted.profile.footprint) << to;
+    EXPECT_EQ(robot.profile.hash, wanted.profile.hash) << to;
+  }
+  const Robot derived = LoadRobot(WriteWith(from, "[]"));
+  EXPECT_EQ(LoadRobot(WriteWith(from, "'[]'")).profile.footprint, derived.profile.footprint);
+  ExpectRefused(from, "[[0.4, 0.3], [0.4, -0.3]]", {"footprint", "three corners"});
+  ExpectRefused(from, "[[0.4, 0.3], [0.4], [-0.2, 0.3]]", {"footprint", "item 2", "pair [x, y]"});
+  ExpectRefused(from, "[[0.4, 0.3], [0.4, far], [-0.2, 0.3]]", {"item 2", "numbers between"});
+  ExpectRefused(from, "[[0.4, 0.3], {x: 0.4, y: 0.1}, [-0.2, 0.3]]", {"item 2", "pair [x, y]"});
+  ExpectRefused(from, "'a circle'", {"footprint is 'a circle'", "a list"});
+}
+
+TEST_F(RobotProfileFile, ARadiusIsToldToBeAFootprint) {
+  ExpectRefused("footprint_padding", "robot_radius: 0.3\nfootprint_padding",
+                {"robot_radius is '0.3'", "wanted `footprint`"});
+}
+
+TEST_F(RobotProfileFile, ARobotWithoutShapesNeedsAFootprintAndSaysWhatItIsWithoutThem) {
+  folder_.Write("ghost.urdf", "<robot name=\"ghost\"><link name=\"a\"/></robot>");
+  EXPECT_THAT([&] { LoadRobot(Write("urdf: ghost.urdf\nfootprint: []\n")); },
+              ThrowsMessage<base::ConfigError>(HasSubstr("give 'footprint'")));
+  const Robot ghost = LoadRobot(
+      Write("urdf: ghost.urdf\nfootprint: [[0.2, 0.2], [-0.2, 0.2], [-0.2, -0.2], [0.2, -0.2]]\n"));
+  EXPECT_THAT(ghost.assumed, ::testing::Contains(HasSubstr("no link has a <collision>")));
+  EXPECT_THAT(LoadRobot(Write(kProfile)).assumed,
+              ::testing::Not(::testing::Contains(HasSubstr("no link has a <collision>"))));
+}
+
 TEST_F(RobotProfileFile, RefusesBadMotionSets) {
   ExpectRefused("default_motion_set: brisk", "default_motion_set: brusque",
                 {"default_motion_set is 'brusque'", "did you mean 'brisk'"});

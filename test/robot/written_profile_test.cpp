@@ -6,12 +6,15 @@
 #include "hires/base/rng.h"
 #include "hires/base/text.h"
 #include "hires/robot/load_robot.h"
+#include "support/log_catcher.h"
+#include "support/messages.h"
 #include "support/rounds.h"
 #include "support/temporary_folder.h"
 
 namespace hires::robot::written_profile_test {
 namespace {
 
+using hires::test_support::LogCatcher;
 using hires::test_support::Rounds;
 using hires::test_support::TemporaryFolder;
 using ::testing::Contains;
@@ -100,6 +103,25 @@ TEST(WriteProfileTest, WhatIsNoLongerACommentIsNoLongerAssumed) {
   EXPECT_EQ(robot.hash(), LoadRobotFromUrdf(kRoot + "/urdf/cart.urdf").hash()) << checked;
   EXPECT_THAT(robot.assumed, Not(Contains(HasSubstr("motion_sets"))));
   EXPECT_THAT(robot.assumed, Not(Contains(HasSubstr("base_controller"))));
+}
+
+TEST(WriteProfileTest, ARobotWithoutShapesHasAFootprintToFillIn) {
+  const TemporaryFolder folder;
+  const std::string urdf = folder.Write(
+      "ghost.urdf",
+      "<robot name='ghost'><link name='base'><visual><geometry><box size='0.4 0.3 0.1'/></geometry>"
+      "</visual></link></robot>");
+  const LogCatcher log(base::LogLevel::kWarn);
+  const std::string text = WriteProfile(urdf, folder.path().string());
+  EXPECT_THAT(log.lines, Contains(HasSubstr("fill in its profile's line `footprint`")));
+  EXPECT_THAT(LinesOf(text), Each(HasSubstr("# ")));
+  EXPECT_THAT(
+      hires::test_support::ConfigErrorOf([&] { LoadRobot(folder.Write("ghost.yaml", text)); }),
+      HasSubstr("give 'footprint' in a profile"));
+  std::string filled = text;
+  filled.replace(filled.find("\nfootprint: []"), 14,
+                 "\nfootprint: [[0.2, 0.1], [-0.2, 0.1], [-0.2, -0.1], [0.2, -0.1]]");
+  EXPECT_EQ(LoadRobot(folder.Write("ghost.yaml", filled)).profile.footprint.size(), 4u);
 }
 
 TEST(WriteProfileTest, LengthsAreRoundedToATenthOfAMillimetre) {

@@ -50,6 +50,14 @@ TEST_F(TransformBufferTest, FollowsChainsInBothDirections) {
   ExpectPose("base_footprint", "map", 10.0, {-2.0, 1.0, -M_PI / 2});
 }
 
+TEST_F(TransformBufferTest, TellsTheNamesOfAllItsFrames) {
+  EXPECT_THAT(buffer_.Names(), IsEmpty());
+  Tell("/map", "/odom_combined", 10.0, {});
+  Tell("base_link", "laser", 10.0, {}, true);
+  EXPECT_THAT(buffer_.Names(),
+              ::testing::UnorderedElementsAre("map", "odom_combined", "base_link", "laser"));
+}
+
 TEST_F(TransformBufferTest, InterpolatesAndKnowsNothingBeyond) {
   Tell("map", "odom", 10.0, {0.0, 0.0, 0.0});
   Tell("map", "odom", 10.2, {1.0, 0.0, 0.4});

@@ -9,6 +9,7 @@
 #include "hires/geometry/angles.h"
 #include "support/fake_frame_tree.h"
 #include "support/messages.h"
+#include "support/simulated_drive.h"
 
 namespace hires::sensing::drive_builder_test {
 namespace {
@@ -21,7 +22,7 @@ using test_support::FakeFrameTree;
 using testing::AllOf;
 using testing::HasSubstr;
 
-const robot::ScanReading kScan{-1.0, 0.5, 0.02, {3, 3, 3, 3, 3}, 30.0};
+const robot::ScanReading kScan{-1.0, 0.5, 0.02, {3.0F, 3.1F, 3.2F, 3.3F, 3.4F}, 30.0};
 
 Pose3 At(double x) { return {{x, 0.0, 0.3}, Eigen::Quaterniond::Identity()}; }
 
@@ -113,6 +114,33 @@ TEST(DriveBuilderTest, RangesThatAreNoLimitsAreTakenAsUnsaid) {
   const RobotLog log = builder.Take();
   EXPECT_EQ(log.scans[0].reading.range_min, 0.0);
   EXPECT_EQ(log.scans[0].reading.range_max, 0.0);
+}
+
+/// Drivers that say 3.5 m where nothing is met, and 30 m or infinity as range_max: else the map has
+/// walls that go along with the robot.
+TEST(DriveBuilderTest, WhatStandsForNothingIsKnownByItsFrequency) {
+  test_support::SimulatedDriveParams params;
+  params.range_max = 3.5;
+  const RobotLog drive =
+      test_support::DriveThrough(test_support::RoomsWithShelf(),
+                                 test_support::CourseThroughTwoRooms(), params, base::Rng(3))
+          .log;
+  for (const double said : {0.0, 30.0, std::numeric_limits<double>::infinity()}) {
+    const FakeFrameTree tree;
+    DriveBuilder builder("a.bag", {}, false, tree);
+    for (const RobotLog::Odometry& odometry : drive.odometry)
+      builder.OnOdometry(10.0 + odometry.time, "base_link", odometry.reading);
+    for (const RobotLog::Scan& scan : drive.scans) {
+      robot::ScanReading reading = scan.reading;
+      reading.range_max = said;
+      builder.OnScan(10.0 + scan.time, "base_link", reading);
+    }
+    testing::internal::CaptureStderr();
+    const RobotLog log = builder.Take();
+    EXPECT_THAT(testing::internal::GetCapturedStderr(), HasSubstr("3.5 m is the largest range"));
+    ASSERT_GT(log.scans.size(), 100u);
+    for (const RobotLog::Scan& scan : log.scans) ASSERT_EQ(scan.reading.range_max, 3.5) << said;
+  }
 }
 
 // ---------------------------------------------------------------- inertial units

@@ -85,6 +85,32 @@ TEST(MoveBaseTest, TwoDrivenWheelsAreNeverDrivenSideways) {
   }
 }
 
+TEST(MoveBaseTest, FlatRobotsAndOnesWithoutShapesDriveByTheirFootprint) {
+  world::World room = Room();
+  room.statics.push_back(Block("crate", {0.5, 1.0, 0.3}, {2.75, 2.0, 0.15}));
+  for (const double height : {0.0, 0.0005, 0.001, 0.004, 0.006, 0.05, 0.09, 0.5}) {
+    robot::Robot robot = TrayRobot();
+    for (robot::Link& link : robot.model.links) link.collisions.clear();
+    if (height > 0.0) {
+      geometry::Collision plate;
+      plate.shape = geometry::Box{{0.625, 0.5, height}};
+      plate.X_BS.translation = {0.0125, 0.0, 0.5 * height};
+      robot.model.links[0].collisions = {plate};
+    }
+    const auto context =
+        std::make_shared<const DrivingContext>(MakeDrivingContext(room, robot, MoveBaseParams{}));
+    const auto cost_at = [&](double x, double y) {
+      int column = 0, row = 0;
+      context->costmap->CellOf({x, y}, &column, &row);
+      return context->costmap->cost(column, row);
+    };
+    EXPECT_EQ(cost_at(2.75, 2.0), navigation::kLethalCost) << height;
+    EXPECT_LT(cost_at(1.0, 2.0), navigation::kLethalCost) << height;
+    MoveBase skill(context, kEast, kFast);
+    ExpectArrivedAt(kEast, RunSkill(&skill, {kWest, {}, false}));
+  }
+}
+
 constexpr double kRadius = 0.6;
 
 /// The test's robot on a car's wheels.

@@ -5,6 +5,7 @@
 #include <set>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "hires/sensing/frame_tree.h"
 #include "hires/sensing/history.h"
@@ -46,6 +47,7 @@ class FakeFrameTree : public sensing::FrameTree {
     if (moving == moving_.end() || moving->second.empty()) return std::nullopt;
     return moving->second.back().stamp;
   }
+  std::vector<std::string> Names() const override { return {names_.begin(), names_.end()}; }
   void ForgetMoving() override { moving_.clear(); }
 
  private:

@@ -27,7 +27,8 @@ struct SimulatedDriveParams {
   double step_error{0.05};       ///< of each step, drawn for it
   double range_noise{0.02};      ///< [m]
   double range_max{30.0};        ///< [m]
-  int beams{361};                ///< over 180 degrees
+  int beams{361};
+  double field_of_view{geometry::kPi};  ///< [rad]
   geometry::Pose2 X_BL{0.27, 0.0, 0.0};
 };
 
@@ -65,8 +66,8 @@ inline double RangeInGrid(const world::OccupancyGrid& grid, const Eigen::Vector2
 inline robot::ScanReading ScanInGrid(const world::OccupancyGrid& grid, const geometry::Pose2& X_ML,
                                      const SimulatedDriveParams& params, base::Rng* rng) {
   robot::ScanReading scan;
-  scan.angle_min = -geometry::kPi / 2.0;
-  scan.angle_increment = geometry::kPi / (params.beams - 1);
+  scan.angle_min = -params.field_of_view / 2.0;
+  scan.angle_increment = params.field_of_view / (params.beams - 1);
   scan.range_min = 0.02;
   scan.range_max = params.range_max;
   for (int i = 0; i < params.beams; ++i) {

@@ -15,10 +15,10 @@
 #include <sdf/World.hh>
 #include <thread>
 
+#include "base/files/model_folders.h"
 #include "hires/base/error.h"
 #include "hires/base/rng.h"
 #include "hires/world/object_catalogue.h"
-#include "world/sdf/model_folders.h"
 #include "world/sdf_file.h"
 #include "world/sdf_model.h"
 #include "world/sdf_texts.h"
@@ -40,7 +40,7 @@ std::string Bits(const geometry::Pose3& pose) {
 }
 
 ResourceFinder FinderFor(const std::string& path) {
-  return ResourceFinder(ModelFoldersFor(path, {}));
+  return ResourceFinder(base::ModelFoldersFor(path, {}));
 }
 
 /// By libsdformat alone, from the whole file.

@@ -3,7 +3,9 @@
 #include <cstddef>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace hires::base {
@@ -36,6 +38,10 @@ class ParamReader {
   std::string GetString(const std::string& key);  ///< any text, also empty
   std::vector<double> GetNumbers(const std::string& key, std::size_t size);  ///< finite numbers
   std::vector<std::string> GetStrings(const std::string& key);
+  /// A list of pairs of numbers, also as text that holds one ("[[1, 2], [3, 4]]"); nothing where it
+  /// is something else.
+  std::optional<std::vector<std::pair<double, double>>> FindPairs(const std::string& key,
+                                                                  const Bound<double>& bound);
 
   bool Has(const std::string& key) const;
   /// All that are missing in one error. Keys of maps within are "path.to.key".

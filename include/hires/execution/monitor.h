@@ -174,6 +174,7 @@ struct StepStatus {
   int plan{0};   ///< 0: the first one, then one more for each repair
   int index{0};  ///< place in that plan
   base::ActionCall action;
+  bool is_of_robot{true};  ///< its robot does it; else it imagines, or keeps the books
   StepPhase phase{StepPhase::kWaiting};
   std::optional<double> started, finished;           ///< [s]
   temporal::Bounds start, finish;                    ///< from the network

@@ -12,8 +12,9 @@ namespace hires::localisation {
 ///   ROBOTLASER1 type start_angle fov resolution max_range accuracy mode
 ///     n r_1 .. r_n  m remissions  x y theta (laser)  x y theta (robot)
 ///     tv rv forward side turn_axis                                          ipc host logger
-/// `#` begins a comment; lines of other kinds (RLASER, SYNC, truepos, ...) are passed over,
-/// whatever the case of their letters.
+///   RAWLASER1 as ROBOTLASER1 up to the remissions                           ipc host logger
+/// A log may lack `ipc host logger`, or accel, in all its lines. `#` begins a comment; lines of
+/// other kinds (RLASER, SYNC, truepos, ...) are passed over, whatever the case of their letters.
 ///
 /// Lines that cannot be read (words missing or too many, no number, a time more than 1 s before an
 /// earlier one of its kind, no name of a message) are passed over, with a warning that counts them
@@ -40,8 +41,9 @@ namespace hires::localisation {
 /// looks as far to the left as to the right, with a warning, and fov where the resolution is 0.
 ///
 /// Where the laser sits on the robot follows from the two poses of its line. If that changes
-/// between lines, a mapper has corrected the log: then PARAM robot_frontlaser_offset says it (0
-/// where it is missing, CARMEN's default), with a warning.
+/// between few places that stay the same, several lasers have written lines of one name, and all
+/// are taken; else a mapper has corrected the log: then PARAM robot_frontlaser_offset says it (0
+/// where it is missing, CARMEN's default). There is a warning of either.
 ///
 /// Where times do not advance over the drive (all equal, or rounded to steps far longer than a
 /// scan), readings are taken in the order of their lines at times that are made up, with a warning.
@@ -51,8 +53,9 @@ namespace hires::localisation {
 /// a warning. Where most moves or turns are faster than any robot a warning asks whether odometry
 /// is in millimetres, centimetres or degrees. Lines ODOM of time 0 that repeat the pose of the scan
 /// before them, as mappers write them into logs that they correct, are passed over, with a warning.
-/// A log that has FLASER and ROBOTLASER1 gives the scans of what comes first. What is no number,
-/// negative or below range_min is kept in a scan as NaN.
+/// A log that has FLASER and ROBOTLASER1 gives the scans of what comes first; one that has neither
+/// those of RAWLASER1, without odometry of their own and robot_frontlaser_offset before the base,
+/// with a warning. What is no number, negative or below range_min is kept in a scan as NaN.
 ///
 /// @throws base::ConfigError naming file and line, what came and what was wanted: no such file,
 /// more lines that cannot be read than 1 %, one of those two parameters that is no number, absurd

@@ -39,6 +39,10 @@ struct MapCounts {
                           ///< and no place seen before ties both sides together since
   double turns_alike{1.0};  ///< [rad/rad] turns by the laser for turns by odometry: -1 where beams
                             ///< are in reverse order; 1 also where nobody turned
+  double ways_alike{1.0};   ///< [m/m] ways likewise, in the median: 3.28 where ranges are in feet;
+                            ///< 1 also on less than 5 m
+  int num_stretches{0};     ///< of 0.5 m or 0.5 rad, on which laser and odometry were compared
+  int num_disagreed{0};     ///< those with a scan of num_searched
 };
 
 /// Whether places to which the robot came back look as before: within 2 m and 1 rad of where it
@@ -54,6 +58,11 @@ struct MapEvidence {
   int num_beams{0};           ///< that were judged
   double explained{1.0};      ///< share that ended within 0.1 m of an occupied cell
   double through_walls{0.0};  ///< share that went on 0.5 m and more behind a wall, and not along it
+  /// [rad] Between first and last beam of the first scan that was drawn.
+  double field_of_view{0.0};
+  /// That this is half a circle, in steps that no such laser has: FLASER, which always means half a
+  /// circle, is written of others, too.
+  bool is_field_assumed{false};
 };
 
 struct MapResult : MapCounts {

@@ -165,6 +165,8 @@ struct Problem {
   std::optional<Formula> goal;     ///< must hold in the end (HDDL's :goal)
   std::vector<Datum> protections;  ///< atoms protected from the beginning, as often as listed here
   std::vector<std::string> warnings;  ///< as Domain's
+  /// Why it cannot be planned for, though others of its file can, with file and line; else "".
+  std::string fault;
 };
 
 /// A protection stands among the atoms of a step as (:protection atom).

@@ -25,7 +25,7 @@ std::optional<std::string> ToShop2Tasks(const TaskNetwork& network);
 Datum ReadGroundTerm(std::string_view text, const std::string& source);
 
 /// The problem of that name, without regard to case.
-/// @throws base::ConfigError that names the ones there are.
+/// @throws base::ConfigError that names the ones there are, or says what is wrong with it.
 const Problem& FindProblem(const std::vector<Problem>& problems, const std::string& name);
 
 }  // namespace hires::planning

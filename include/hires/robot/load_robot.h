@@ -29,10 +29,12 @@ std::string ReadUrdfOf(const std::string& path, const RobotProfile& profile);
 bool IsMotionAssumed(const std::string& path);
 
 /// A robot as a profile, each line with a comment that says where it comes from, to be corrected.
-/// As it stands it gives the robot that it was made of, bit by bit (RobotProfile::hash).
+/// As it stands it gives the robot that it was made of, bit by bit (RobotProfile::hash), but where
+/// no shape says how large that is: then its line `footprint` must be filled in first, which is
+/// logged.
 /// @param path  a URDF or xacro file, as LoadAnyRobot has it.
 /// @param folder  where the profile will lie; its `urdf` is as seen from there.
-/// @throws base::ConfigError as LoadRobotFromUrdf.
+/// @throws base::ConfigError as LoadRobotModel.
 std::string WriteProfile(const std::string& path, const std::string& folder);
 
 }  // namespace hires::robot

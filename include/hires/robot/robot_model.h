@@ -58,6 +58,8 @@ struct RobotModel {
   std::vector<std::string> JointNames() const;  ///< movable ones that mimic no other
 };
 
+/// Whether any link has a collision shape.
+bool HasShapes(const RobotModel& model);
 /// The joint of that name, or nullptr.
 const Joint* FindJoint(const RobotModel& model, const std::string& name);
 /// Index of the link that the joint of that name carries.
@@ -69,13 +71,16 @@ bool IsBelow(const RobotModel& model, int link, int above);
 std::vector<std::string> LinksBelow(const RobotModel& model, const std::string& link);
 
 /// Reads a URDF. Collision meshes (package:// by ROS_PACKAGE_PATH or a folder above the file,
-/// file://, or relative to the file) are loaded; a missing one is an error. Friction comes from
-/// `<gazebo reference="link">` (mu1, mu2) and the link's `<contact>` (lateral_friction), the
-/// smallest of them; 1 where there is none. A mass that is not positive, inertias that are not
-/// positive definite and what is no number leave their `inertial` out; principal moments that break
-/// the triangle inequality, as invented ones of tiny frames do, are kept. One warning names the
-/// links of both. Joints that float are fixed, those that need limits and have none are held at 0,
-/// each kind with a warning.
+/// model:// as worlds have it, file://, or relative to the file) are loaded; a missing one is an
+/// error. Friction comes from `<gazebo reference="link">` (mu1, mu2) and the link's `<contact>`
+/// (lateral_friction), the smallest of them; 1 where there is none, 1000 for an infinite or a
+/// negative one.
+/// A mass that is not positive, inertias that are not positive definite and what is no number leave
+/// their `inertial` out; principal moments that break the triangle inequality, as invented ones of
+/// tiny frames do, are kept. One warning names the links of both. Joints that float are fixed,
+/// those that need limits and have none are held at 0; limits in the wrong order are swapped, and
+/// joints without an axis or that follow nothing that moves are fixed: each kind with a warning.
+/// Joints that follow one that follows another name the one that leads.
 /// @throws base::ConfigError with all that is wrong: file, element, line and remedy.
 RobotModel LoadRobotModel(const std::string& urdf_path);
 /// The same for text; `where` is the file's path in messages and for relative meshes.
@@ -83,7 +88,8 @@ RobotModel ParseRobotModel(const std::string& urdf_xml, const std::string& where
 
 /// Pose of every link in the root link's frame, in the order of `model.links`.
 /// @throws base::ConfigError for a joint that is unknown, fixed or mimics another (set the one that
-/// leads), or for a position outside the limits of a joint or of one that follows it (slack 1e-6).
+/// leads), or for a position outside the limits of a joint (slack 1e-6); one that follows it stops
+/// at its own limits.
 std::vector<geometry::Pose3> ForwardKinematics(const RobotModel& model,
                                                const JointPositions& positions);
 

@@ -35,8 +35,9 @@ struct UnitReading {
 /// Stamps [s] are those in the messages. Readings up to 1 s late are put in order, of two with one
 /// stamp the first one stays. A scan waits until the transforms tell where its laser was at its
 /// stamp; what still waits at the end takes the newest they know. A laser that hangs upside down is
-/// turned over, as localisation::LevelLaser does. How an inertial unit is mounted does not change:
-/// the newest that the transforms tell will do.
+/// turned over, as localisation::LevelLaser does. Where `range_max` is larger than what the laser
+/// says where it meets nothing, that shows by how often it says it, and counts. How an inertial
+/// unit is mounted does not change: the newest that the transforms tell will do.
 ///
 /// Left out, counted, and told as warnings: readings without stamp, with numbers that are none, of
 /// another base, of an inertial unit of which the transforms tell nothing; scans with angles that
@@ -98,6 +99,7 @@ class DriveBuilder {
   void RequireOdometry() const;
   void LeaveOutBeyondOdometry();
   void RequireScans() const;
+  std::string FramesText() const;
   std::string LeftOutText() const;
 
   std::string recording_;

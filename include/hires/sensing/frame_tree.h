@@ -2,6 +2,7 @@
 
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "hires/geometry/pose.h"
 
@@ -32,6 +33,8 @@ class FrameTree {
   /// nothing if they are not connected.
   virtual std::optional<double> NewestOf(const std::string& parent,
                                          const std::string& child) const = 0;
+  /// Of all frames that it was told of, in any order.
+  virtual std::vector<std::string> Names() const = 0;
   /// The clock began again: what moves is unknown, what never does stays.
   virtual void ForgetMoving() = 0;
 };

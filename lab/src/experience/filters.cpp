@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "hires/base/averages.h"
+#include "base/averages.h"
 #include "hires/geometry/angles.h"
 #include "reports/text/statistics.h"
 

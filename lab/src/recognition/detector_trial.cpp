@@ -2,8 +2,8 @@
 #include <cmath>
 #include <limits>
 
+#include "base/averages.h"
 #include "base/parallel.h"
-#include "hires/base/averages.h"
 #include "lab/src/recognition/fit_cases.h"
 #include "lab/src/recognition/regression.h"
 

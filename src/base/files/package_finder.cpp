@@ -173,9 +173,11 @@ std::string PackageFinder::Find(const std::string& uri,
                                 const std::vector<std::string>& near) const {
   const std::string rest = uri.substr(sizeof(kScheme) - 1);
   const std::size_t slash = rest.find('/');
+  // Several slashes are one, as in any path.
+  const std::size_t begin = slash == std::string::npos ? slash : rest.find_first_not_of('/', slash);
   const fs::path inside =
-      slash == std::string::npos ? fs::path() : fs::path(rest.substr(slash + 1)).lexically_normal();
-  if (slash == 0 || inside.empty() || inside.is_absolute() || *inside.begin() == "..") {
+      begin == std::string::npos ? fs::path() : fs::path(rest.substr(begin)).lexically_normal();
+  if (slash == 0 || inside.empty() || *inside.begin() == "..") {
     throw ConfigError(
         fmt::format("'{}' names no file inside a package; wanted package://<package>/<path>", uri));
   }

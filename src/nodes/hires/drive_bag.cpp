@@ -134,10 +134,6 @@ DriveTopics TopicsOf(const std::string& path, const std::vector<BagTopic>& topic
       ListOfTopics(topics)));
 }
 
-ScanReading ReadingOf(const sensor_msgs::LaserScan& msg) {
-  return {msg.angle_min, msg.angle_increment, msg.range_min, msg.ranges, msg.range_max};
-}
-
 bool IsRotation(const geometry_msgs::Quaternion& q) {
   return std::sqrt(q.x * q.x + q.y * q.y + q.z * q.z + q.w * q.w) > kLeastTurn;
 }
@@ -167,6 +163,22 @@ class DriveReader {
                              ReadingOf(NearestEchoesOf(*scan)));
     }
     builder_.LeaveOut("scans of another type, or of another version of it");
+  }
+
+  /// Some drivers leave angle_increment 0, and angle_max tells it, if they do not leave that 0,
+  /// too.
+  ScanReading ReadingOf(const sensor_msgs::LaserScan& msg) {
+    ScanReading reading{msg.angle_min, msg.angle_increment, msg.range_min, msg.ranges,
+                        msg.range_max};
+    const double span = static_cast<double>(msg.angle_max) - msg.angle_min;
+    const bool is_told_by_span =
+        std::isfinite(span) && span != 0.0 && msg.angle_max != 0.0F && msg.ranges.size() > 1;
+    if (msg.angle_increment != 0.0F || !is_told_by_span) return reading;
+    reading.angle_increment = span / static_cast<double>(msg.ranges.size() - 1);
+    WarnOnce(
+        "angle_increment of scans is 0: the angle between two beams is taken from angle_min, "
+        "angle_max and the number of ranges");
+    return reading;
   }
 
   void TakeOdometry(const rosbag::MessageInstance& message) {
@@ -221,11 +233,13 @@ class DriveReader {
     const TransformBuffer::News news = tree_.Take(part, are_static);
     for (std::size_t i = 0; i < news.warnings.size(); ++i)
       builder_.LeaveOut("transforms without frames, or with numbers that are none");
-    for (const std::string& doubt : news.doubts) {
-      if (doubts_.insert(doubt).second)
-        hires::base::Log(hires::base::LogLevel::kWarn, path_ + ": " + doubt);
-    }
+    for (const std::string& doubt : news.doubts) WarnOnce(doubt);
     builder_.OnTransforms();
+  }
+
+  void WarnOnce(const std::string& doubt) {
+    if (doubts_.insert(doubt).second)
+      hires::base::Log(hires::base::LogLevel::kWarn, path_ + ": " + doubt);
   }
 
   const std::string& path_;

@@ -4,7 +4,7 @@
 #include <map>
 #include <opencv2/imgproc.hpp>
 
-#include "hires/base/averages.h"
+#include "base/averages.h"
 #include "hires/base/check.h"
 #include "hires/perception/line_of_sight.h"
 

@@ -7,7 +7,7 @@
 #include <set>
 #include <utility>
 
-#include "hires/base/averages.h"
+#include "base/averages.h"
 #include "hires/base/error.h"
 #include "hires/perception/depth_sensor.h"
 #include "perception/recognition/model_fit.h"

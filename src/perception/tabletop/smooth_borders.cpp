@@ -4,7 +4,7 @@
 #include <map>
 #include <utility>
 
-#include "hires/base/averages.h"
+#include "base/averages.h"
 
 namespace hires::perception {
 namespace {

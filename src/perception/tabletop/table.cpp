@@ -6,7 +6,7 @@
 #include <cmath>
 #include <vector>
 
-#include "hires/base/averages.h"
+#include "base/averages.h"
 #include "hires/perception/depth_sensor.h"
 #include "perception/patches/ransac_plane.h"
 

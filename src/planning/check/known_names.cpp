@@ -41,9 +41,12 @@ class Conditions {
   }
 
   const std::vector<Asked>& asked() const { return asked_; }
+  /// A variable stands for a goal, so that anything may be asked for.
+  bool is_open() const { return is_open_; }
 
  private:
   void Collect(const Formula& formula, const std::string& by) {
+    is_open_ = is_open_ || formula.kind == Formula::Kind::kGoal;
     if (formula.kind == Formula::Kind::kAtom && !formula.term.Head().empty()) {
       asked_.push_back({std::string(formula.term.Head()), by, formula.place});
     }
@@ -58,6 +61,7 @@ class Conditions {
   }
 
   std::vector<Asked> asked_;
+  bool is_open_{false};
 };
 
 class Symbols {
@@ -129,6 +133,39 @@ void CollectArguments(const TaskNetwork& network, std::vector<std::string>* name
   }
 }
 
+/// Predicates that the domain has anything to do with.
+std::set<std::string> PredicatesOf(const Domain& domain, const Conditions& conditions) {
+  std::set<std::string> names = ChangingPredicates(domain).names;
+  for (const Asked& asked : conditions.asked()) names.insert(asked.name);
+  for (const Axiom& axiom : domain.axioms) names.emplace(axiom.head.Head());
+  return names;
+}
+
+/// Facts of a file that the domain has nothing to do with, though it has with one spelt alike;
+/// where nothing gives that one, the condition that asks for it is told of. What a program observes
+/// may be anything.
+void AddMisspeltFacts(const Domain& domain, const Problem& problem, const Conditions& conditions,
+                      const PredicateSet& given, std::vector<std::string>* warnings) {
+  constexpr int kMostCompared = 100;  // comparing takes time with the number of names
+  if (conditions.is_open() || problem.name.empty()) return;
+  const std::set<std::string> names = PredicatesOf(domain, conditions);
+  std::set<std::string> seen = names;
+  int compared = 0;
+  for (const Datum& fact : problem.facts) {
+    const std::string name(fact.Head());
+    if (fact.place.line == 0 || !seen.insert(name).second) continue;
+    if (++compared > kMostCompared) return;
+    const auto meant = std::find_if(names.begin(), names.end(), [&](const std::string& other) {
+      return given.MayHave(other) && base::AreSpeltAlike(name, other);
+    });
+    if (meant == names.end()) continue;
+    warnings->push_back(fmt::format(
+        "{}problem '{}': no operator, method or axiom has anything to do with ({} ...); did you "
+        "mean '{}'?",
+        At(problem.source, fact.place), problem.name, name, *meant));
+  }
+}
+
 }  // namespace
 
 std::set<std::string> SymbolsOf(const Domain& domain, const Problem& problem) {
@@ -176,10 +213,11 @@ PredicateSet PredicatesGiven(const Domain& domain, const Problem& problem) {
 std::vector<std::string> MisspeltPredicates(const Domain& domain, const Problem& problem) {
   std::vector<std::string> warnings;
   if (domain.language == Domain::Language::kHddl) return warnings;
+  const Conditions conditions(domain);
   const PredicateSet given = PredicatesGiven(domain, problem);
+  AddMisspeltFacts(domain, problem, conditions, given, &warnings);
   if (given.is_open) return warnings;
   std::set<std::string> seen = given.names;
-  const Conditions conditions(domain);
   for (const Asked& asked : conditions.asked()) {
     if (!seen.insert(asked.name).second) continue;
     const auto meant = std::find_if(

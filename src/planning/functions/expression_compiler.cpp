@@ -142,8 +142,11 @@ class ExpressionCompiler {
     }
     std::vector<std::string> known;
     for (const auto& local : locals_) known.push_back(local.first);
-    Fail(datum, base::UnknownName("unbound name: value", datum.text, known) +
-                    fmt::format("; write '{} for the symbol itself", Excerpt(datum)));
+    Fail(datum,
+         base::UnknownName("unbound name: value", datum.text, known) +
+             fmt::format("; write '{} for the symbol itself (words stand for themselves, as in "
+                         "JSHOP2, where a file computes by (call ...) alone)",
+                         Excerpt(datum)));
   }
 
   Node List(const Datum& datum) {

@@ -31,15 +31,30 @@ char ToLowerAscii(char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 
 
 /// A list or a quote whose end has not come yet.
 struct Open {
-  enum class Wants { kItems, kTail, kEnd, kQuoted };
+  /// kRequired, kForbidden: the feature after `#+`, `#-`. kSkipped: what is left out.
+  enum class Wants { kItems, kTail, kEnd, kQuoted, kRequired, kForbidden, kSkipped };
   Datum list;
   Wants wants{Wants::kItems};
+
+  bool IsList() const { return wants <= Wants::kEnd; }
 };
+
+/// Of a program that is no Lisp and has none.
+bool HasFeature(const Datum& feature) {
+  const std::string_view head = feature.Head();
+  const auto begin = feature.items.begin() + (feature.items.empty() ? 0 : 1);
+  if (head == "and" || head == ":and") return std::all_of(begin, feature.items.end(), HasFeature);
+  if (head == "or" || head == ":or") return std::any_of(begin, feature.items.end(), HasFeature);
+  if (head == "not" || head == ":not") return std::none_of(begin, feature.items.end(), HasFeature);
+  return false;
+}
 
 class DataReader {
  public:
-  DataReader(std::string_view text, const std::string& source, const ReaderLimits& limits)
-      : text_(text), source_(source), limits_(limits) {}
+  /// @param file  null: the text is no whole Lisp file, and its marks mean nothing.
+  DataReader(std::string_view text, const std::string& source, const ReaderLimits& limits,
+             LispFile* file = nullptr)
+      : text_(text), source_(source), limits_(limits), file_(file) {}
 
   std::vector<Datum> Read();
   std::string FirstWord();
@@ -62,6 +77,9 @@ class DataReader {
 
   void ReadOne();
   void ReadHash();
+  bool IsPassedOver() const;
+  void ReadStrangeHash();
+  void ReadCharacter();
   void ReadString();
   void ReadToken();
   bool ReadTokenText(std::string* token);
@@ -80,12 +98,14 @@ class DataReader {
   void Push(Open open);
   void Close();
   void Put(Datum datum, Place place);
+  bool TakeMark(const Datum& datum);
   void PutInto(Open* open, Datum datum) const;
   void Count();
 
   std::string_view text_;
   const std::string& source_;
   const ReaderLimits& limits_;
+  LispFile* const file_;
   std::size_t position_{0};
   Place here_{1, 1};  // of position_
   std::size_t num_data_{0};
@@ -132,17 +152,18 @@ void DataReader::Skip(int count) {
 
 void DataReader::FailUnclosed() const {
   const Open& open = open_.back();
-  const bool is_quote = open.wants == Open::Wants::kQuoted;
   FailAt(source_, open.list.place,
-         is_quote ? "the text ends after this quote; write what it quotes, or take it away"
-                  : fmt::format("the text ends in line {} before the list that opens here is "
-                                "closed; add the missing ')'{}",
-                                here_.line,
-                                definition_inside_
-                                    ? fmt::format(", before line {}, where a definition begins "
-                                                  "within another",
-                                                  definition_inside_->line)
-                                    : ""));
+         !open.IsList()
+             ? "the text ends after this quote or mark; write what belongs to it, or take "
+               "it away"
+             : fmt::format("the text ends in line {} before the list that opens here is "
+                           "closed; add the missing ')'{}",
+                           here_.line,
+                           definition_inside_
+                               ? fmt::format(", before line {}, where a definition begins "
+                                             "within another",
+                                             definition_inside_->line)
+                               : ""));
 }
 
 // ---------------------------------------------------------------------------- blanks and comments
@@ -198,8 +219,9 @@ void DataReader::ReadOne() {
     case '`':
       return OpenQuote("backquote", 1);
     case ',':
-      if (StartsWith(",@")) Fail("',@' is not supported; build the list with 'append' instead");
-      return OpenQuote("unquote", 1);
+      if (!StartsWith(",@")) return OpenQuote("unquote", 1);
+      if (IsPassedOver()) return OpenQuote("unquote", 2);
+      Fail("',@' is not supported; build the list with 'append' instead");
     case '"':
       return ReadString();
     case '#':
@@ -211,12 +233,59 @@ void DataReader::ReadOne() {
 
 void DataReader::ReadHash() {
   if (StartsWith("#'")) return OpenQuote("function", 2);
+  if (StartsWith("#:")) {
+    Skip(2);
+    if (AtEnd() || EndsToken(Peek()))
+      Fail("a name was wanted after '#:'; write it, or take '#:' away");
+    return ReadToken();
+  }
+  if (file_ != nullptr && (StartsWith("#+") || StartsWith("#-"))) {
+    Push({{}, StartsWith("#+") ? Open::Wants::kRequired : Open::Wants::kForbidden});
+    return Skip(2);
+  }
+  if (IsPassedOver()) return ReadStrangeHash();
   if (StartsWith("#.")) {
     Fail("'#.' runs code while a file is read, which no file may; write the value itself");
   }
   Fail(
       "'#' starts nothing that is known here; wanted #'function, #| comment |#, or a name that "
       "does not begin with '#' (|#name| if it must)");
+}
+
+/// Left out by a mark, or within a list that is none of the file's definitions, nor within one.
+bool DataReader::IsPassedOver() const {
+  if (file_ == nullptr || open_.empty()) return false;
+  bool is_meant = false;
+  for (const Open& open : open_) {
+    if (open.wants == Open::Wants::kSkipped) return true;
+    const std::string_view head = WithoutPackage(open.list.Head());
+    const auto& known = file_->definitions;
+    is_meant = is_meant || std::find(known.begin(), known.end(), head) != known.end();
+  }
+  return !is_meant;
+}
+
+/// Vectors, numbers, structures and others: what follows the sign and its letter is read as it is.
+void DataReader::ReadStrangeHash() {
+  if (StartsWith("#\\")) return ReadCharacter();
+  const bool is_evaluated = StartsWith("#.");
+  Skip(is_evaluated ? 2 : 1);
+  if (is_evaluated || AtEnd() || EndsToken(Peek())) return;
+  ReadToken();
+}
+
+/// #\a, #\( and #\Space.
+void DataReader::ReadCharacter() {
+  const Place begin = here_;
+  Count();
+  Skip(2);
+  std::string name = "#\\";
+  do {
+    name += NextInText("character", begin);
+    CheckLength(name, begin);
+  } while (!AtEnd() && !EndsToken(Peek()));
+  CheckText(name, begin);
+  Put(MakeSymbol(name), begin);
 }
 
 void DataReader::Count() {
@@ -254,8 +323,10 @@ void DataReader::OpenQuote(std::string_view name, int length) {
 void DataReader::Close() {
   if (open_.empty()) Fail("')' closes nothing; take it away, or look for a ')' too many above");
   Open open = std::move(open_.back());
-  if (open.wants == Open::Wants::kQuoted) {
-    Fail("')' follows a quote; write what it quotes, or take the quote away");
+  if (!open.IsList()) {
+    Fail(
+        "')' follows a quote or a mark; write what belongs to the quote or the mark, or take it "
+        "away");
   }
   if (open.wants == Open::Wants::kTail) {
     Fail("')' follows a dot; write the rest of the list after the dot, as in (?first . ?rest)");
@@ -268,7 +339,8 @@ void DataReader::Close() {
 
 void DataReader::Put(Datum datum, Place place) {
   datum.place = place;
-  while (!open_.empty() && open_.back().wants == Open::Wants::kQuoted) {
+  while (!open_.empty() && !open_.back().IsList()) {
+    if (TakeMark(datum)) return;
     Datum quoted = std::move(open_.back().list);
     open_.pop_back();
     quoted.items.push_back(std::move(datum));
@@ -279,6 +351,21 @@ void DataReader::Put(Datum datum, Place place) {
   } else {
     PutInto(&open_.back(), std::move(datum));
   }
+}
+
+/// Whether the datum belongs to a mark, and so to nothing else.
+bool DataReader::TakeMark(const Datum& datum) {
+  const Open::Wants wants = open_.back().wants;
+  if (wants == Open::Wants::kQuoted) return false;
+  const Place place = open_.back().list.place;
+  open_.pop_back();
+  if (wants == Open::Wants::kSkipped) return true;
+  const bool is_read = HasFeature(datum) == (wants == Open::Wants::kRequired);
+  (is_read ? file_->kept : file_->skipped).push_back(place);
+  if (is_read) return true;
+  Push({{}, Open::Wants::kSkipped});
+  open_.back().list.place = place;
+  return true;
 }
 
 void DataReader::PutInto(Open* open, Datum datum) const {
@@ -458,6 +545,18 @@ Datum DataReader::RatioDatum(std::string_view token, Place place) const {
 std::vector<Datum> ReadData(std::string_view text, const std::string& source,
                             const ReaderLimits& limits) {
   return DataReader(text, source, limits).Read();
+}
+
+std::vector<Datum> ReadLispFile(std::string_view text, const std::string& source, LispFile* file) {
+  const ReaderLimits limits;
+  return DataReader(text, source, limits, file).Read();
+}
+
+std::string_view WithoutPackage(std::string_view name) {
+  const std::size_t colon = name.rfind(':');
+  const bool has_package =
+      colon != std::string_view::npos && name.front() != ':' && colon + 1 < name.size();
+  return has_package ? name.substr(colon + 1) : name;
 }
 
 std::string FirstWord(std::string_view text, const std::string& source) {

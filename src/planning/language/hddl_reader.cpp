@@ -8,6 +8,7 @@
 #include "hires/base/text.h"
 #include "hires/planning/datum_reader.h"
 #include "hires/planning/domain.h"
+#include "planning/language/faults.h"
 #include "planning/language/hddl_effect.h"
 #include "planning/language/hddl_formula.h"
 #include "planning/language/hddl_network.h"
@@ -104,9 +105,15 @@ class DomainReader {
     const Sections sections =
         ReadSections(spot_, definition_.form, DomainSections(), {":task", ":method", ":action"});
     ReadDeclarations(sections);
-    for (const Datum* form : AllOf(sections, ":action")) ReadAction(*form);
+    Faults faults;
+    for (const Datum* form : AllOf(sections, ":action")) {
+      faults.Collect([&] { ReadAction(*form); });
+    }
     CollectStaticConditions();
-    for (const Datum* form : AllOf(sections, ":method")) ReadMethod(*form);
+    for (const Datum* form : AllOf(sections, ":method")) {
+      faults.Collect([&] { ReadMethod(*form); });
+    }
+    faults.Require();
     AddMissingMethods();
     domain_.facts = TypeFacts(spot_.Within("(:constants ...)"), vocabulary_, nullptr);
     domain_.vocabulary = std::make_shared<HddlVocabulary>(std::move(vocabulary_));
@@ -116,7 +123,7 @@ class DomainReader {
  private:
   void ReadDeclarations(const Sections& sections) {
     if (const Datum* section = OneOf(sections, ":requirements")) {
-      CheckRequirements(spot_.Within("(:requirements ...)"), *section);
+      CheckRequirements(spot_.Within("(:requirements ...)"), *section, &domain_.warnings);
     }
     ReadTypeSection(spot_.Within("(:types ...)"), OneOf(sections, ":types"), &vocabulary_);
     if (const Datum* section = OneOf(sections, ":constants")) {
@@ -307,7 +314,7 @@ class ProblemReader {
     const Sections sections = ReadSections(spot_, definition_.form, ProblemSections(), {});
     ReadDomainName(sections);
     if (const Datum* section = OneOf(sections, ":requirements")) {
-      CheckRequirements(spot_.Within("(:requirements ...)"), *section);
+      CheckRequirements(spot_.Within("(:requirements ...)"), *section, &problem_.warnings);
     }
     if (const Datum* section = OneOf(sections, ":objects")) {
       ReadObjects(spot_.Within("(:objects ...)"), *section, &vocabulary_);
@@ -349,8 +356,12 @@ class ProblemReader {
     }
     if (found == nullptr) {
       spot_.Fail(definition_.form,
-                 "(:htn ...) is missing; say which tasks are to be done, as in "
-                 "(:htn :ordered-subtasks (and (task a b)))");
+                 fmt::format("(:htn ...) is missing; say which tasks are to be done, as in "
+                             "(:htn :ordered-subtasks (and (task a b))){}",
+                             domain_.methods.empty()
+                                 ? ". The domain has no method either: this is PDDL, whose goals "
+                                   "a planner without tasks reaches; here tasks are decomposed"
+                                 : ""));
     }
     return *found;
   }

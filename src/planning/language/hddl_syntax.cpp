@@ -247,14 +247,26 @@ HddlDefinition ReadDefinition(std::string_view text, const std::string& source,
   return {std::move(*found), std::move(name)};
 }
 
-void CheckRequirements(const HddlSpot& spot, const Datum& section) {
+void CheckRequirements(const HddlSpot& spot, const Datum& section,
+                       std::vector<std::string>* warnings) {
+  std::vector<std::string> unknown;
+  Place first;
   for (std::size_t i = 1; i < section.items.size(); ++i) {
     const Datum& item = section.items[i];
-    if (item.kind == Datum::Kind::kSymbol && IsKnownRequirement(item.text)) continue;
-    spot.Fail(item, fmt::format("requirement {} is not supported; take it away if the file does "
-                                "without. Known are {}",
-                                Excerpt(item), base::Join(KnownRequirements(), " ")));
+    if (item.kind != Datum::Kind::kSymbol || item.text.rfind(':', 0) != 0) {
+      spot.Fail(item, fmt::format("{} came, wanted keywords such as {}", Excerpt(item),
+                                  base::Join(KnownRequirements(), " ")));
+    }
+    if (IsKnownRequirement(item.text)) continue;
+    if (unknown.empty()) first = item.place;
+    unknown.push_back(Excerpt(item));
   }
+  if (unknown.empty()) return;
+  warnings->push_back(Located(
+      spot.source, first,
+      fmt::format("{}: {} {} not supported, and refused where the file makes use of it; take it "
+                  "away if it does without",
+                  spot.construct, base::Join(unknown, " "), unknown.size() == 1 ? "is" : "are")));
 }
 
 }  // namespace hires::planning::hddl

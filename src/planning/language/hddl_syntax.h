@@ -69,8 +69,10 @@ struct HddlDefinition {
 HddlDefinition ReadDefinition(std::string_view text, const std::string& source,
                               std::string_view kind);
 
-/// @throws ConfigError if a requirement is none that HDDL or PDDL know, or one that is beyond this
-///   planner (durative actions, numbers that change, preferences).
-void CheckRequirements(const HddlSpot& spot, const Datum& section);
+/// Requirements tell what the file may use, and need not: of those that are beyond this planner
+/// (durative actions, numbers that change, preferences) there is one warning, and an error where
+/// they are made use of. @throws ConfigError where one is no keyword.
+void CheckRequirements(const HddlSpot& spot, const Datum& section,
+                       std::vector<std::string>* warnings);
 
 }  // namespace hires::planning::hddl

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <filesystem>
 
 #include "hires/base/error.h"
@@ -35,6 +36,39 @@ void WarnOfOtherDomain(const Domain& domain, Problem* problem) {
                           problem->name, problem->domain, domain.name, domain.source)));
 }
 
+/// A file that holds the domain, too, was warned of with it.
+void DropKnownWarnings(const Domain& domain, Problem* problem) {
+  std::vector<std::string>& warnings = problem->warnings;
+  const auto is_known = [&](const std::string& warning) {
+    return std::find(domain.warnings.begin(), domain.warnings.end(), warning) !=
+           domain.warnings.end();
+  };
+  warnings.erase(std::remove_if(warnings.begin(), warnings.end(), is_known), warnings.end());
+}
+
+void NoteFaultyTasks(const Domain& domain, Problem* problem) {
+  if (!problem->fault.empty()) return;
+  try {
+    CheckTasks(*problem, domain);
+  } catch (const base::ConfigError& error) {
+    problem->fault = error.what();
+  }
+}
+
+/// Whoever plans for one problem of the file is told of the others.
+void WarnOfFaults(std::vector<Problem>* problems) {
+  const auto is_faulty = [](const Problem& problem) { return !problem.fault.empty(); };
+  const auto first = std::find_if(problems->begin(), problems->end(), is_faulty);
+  if (first == problems->end()) return;
+  const auto count = std::count_if(first, problems->end(), is_faulty);
+  const std::string more = count == 1 ? "" : fmt::format(" ({} such problems)", count);
+  const std::string text =
+      fmt::format("another problem of the file cannot be planned for: {}{}", first->fault, more);
+  for (Problem& problem : *problems) {
+    if (!is_faulty(problem)) problem.warnings.push_back(text);
+  }
+}
+
 std::vector<Problem> ReadProblems(const std::string& path, const Domain& domain) {
   const std::string text = base::ReadTextFile(path);
   const Domain::Language language = LanguageOf(text, path);
@@ -45,22 +79,46 @@ std::vector<Problem> ReadProblems(const std::string& path, const Domain& domain)
   }
   if (language == Domain::Language::kHddl) return {ReadHddlProblem(text, path, domain)};
   std::vector<Problem> problems = ReadShop2Problems(text, path);
-  for (const Problem& problem : problems) CheckTasks(problem, domain);
+  for (Problem& problem : problems) NoteFaultyTasks(domain, &problem);
+  RequireOneWithoutFault(problems);
+  WarnOfFaults(&problems);
   return problems;
+}
+
+/// Letters of two bytes each: with a byte order mark, or with a zero beside each letter of ASCII.
+bool IsUtf16(std::string_view text) {
+  const std::string_view start = text.substr(0, 2);
+  return start == "\xFF\xFE" || start == "\xFE\xFF" ||
+         (start.size() == 2 && (start[0] == '\0') != (start[1] == '\0'));
+}
+
+std::string BeginOf(std::string_view text, const std::string& first_word) {
+  if (!first_word.empty()) return "begins with (" + Excerpt(MakeSymbol(first_word));
+  const bool is_blank = text.find_first_not_of(" \t\r\n\f\v\xEF\xBB\xBF") == text.npos;
+  return is_blank ? "is empty" : "begins with no word in parentheses";
 }
 
 }  // namespace
 
 Domain::Language LanguageOf(std::string_view text, const std::string& source) {
+  if (IsUtf16(text)) {
+    throw base::ConfigError(fmt::format(
+        "{}: is no planning file as it is: it is written in UTF-16, wanted UTF-8; save it as UTF-8",
+        source));
+  }
   const std::string word = FirstWord(text, source);
   if (word == "define") return Domain::Language::kHddl;
   for (const char* known : {"defdomain", "defproblem", "make-problem", "in-package"}) {
-    if (word == known) return Domain::Language::kShop2;
+    if (WithoutPackage(word) == known) return Domain::Language::kShop2;
   }
+  // Other forms of Lisp may stand before, and so may a mark of its reader.
+  const bool may_be_lisp =
+      !word.empty() || text.find("#+") != text.npos || text.find("#-") != text.npos;
+  if (may_be_lisp && IsShop2File(text, source)) return Domain::Language::kShop2;
   throw base::ConfigError(fmt::format(
-      "{}: is no planning file: it begins with {}, wanted (defdomain or (defproblem for SHOP2, "
-      "(define for HDDL; name another file",
-      source, word.empty() ? "no word in parentheses" : "(" + Excerpt(MakeSymbol(word))));
+      "{}: is no planning file: it {}, wanted (defdomain or (defproblem for SHOP2, (define for "
+      "HDDL; name another file",
+      source, BeginOf(text, word)));
 }
 
 Domain LoadDomain(const std::string& path) {
@@ -82,7 +140,10 @@ void CheckSidecar(const std::string& domain_path, const Domain& domain) {
 
 std::vector<Problem> LoadProblems(const std::string& path, const Domain& domain) {
   std::vector<Problem> problems = ReadProblems(path, domain);
-  for (Problem& problem : problems) WarnOfOtherDomain(domain, &problem);
+  for (Problem& problem : problems) {
+    DropKnownWarnings(domain, &problem);
+    WarnOfOtherDomain(domain, &problem);
+  }
   return problems;
 }
 

@@ -5,6 +5,7 @@
 #include <iterator>
 #include <utility>
 
+#include "hires/planning/datum_reader.h"
 #include "planning/language/shop2_parts.h"
 
 namespace hires::planning::shop2 {
@@ -283,6 +284,14 @@ Effect ReadProtection(const Construct& in, const Datum& datum) {
   WantArguments(in, datum, 1, 1, kForm);
   Effect effect = MakeEffect(Effect::Kind::kProtection, datum);
   effect.term = Unquoted(datum.items[1]);
+  if (effect.term.Head() == "not") {
+    Fail(in, datum.place,
+         fmt::format(
+             "{} protects that an atom does not hold, as SHOP3 can; here atoms that hold are "
+             "protected alone; protect another atom, or check in the preconditions of what "
+             "adds this one",
+             Excerpt(datum)));
+  }
   if (effect.term.kind != Datum::Kind::kVariable) CheckAtom(in, effect.term, kForm);
   return effect;
 }
@@ -336,6 +345,28 @@ std::vector<Effect> ReadEffects(const Construct& in, const Datum& datum) {
   std::transform(datum.items.begin(), datum.items.end(), std::back_inserter(effects),
                  [&](const Datum& effect) { return ReadEffect(in, effect); });
   return effects;
+}
+
+std::vector<Effect> ReadDeletes(const Construct& in, const Datum& datum,
+                                std::vector<std::string>* warnings) {
+  if (!datum.IsList() || !datum.tail.empty() || !datum.Head().empty())
+    return ReadEffects(in, datum);
+  const auto is_inert = [](const Datum& item) {
+    const std::string_view head = item.Head();
+    return IsLogicalWord(head) && head != "forall" && head != "shop-forall";
+  };
+  const auto first = std::find_if(datum.items.begin(), datum.items.end(), is_inert);
+  if (first == datum.items.end()) return ReadEffects(in, datum);
+  warnings->push_back(
+      Located(in.source, first->place,
+              fmt::format("{}: the delete {} begins with a logical word and deletes nothing, as no "
+                          "fact has such a name; it is passed over; take it away, or write the "
+                          "atoms that shall go",
+                          in.name, Excerpt(*first))));
+  Datum rest = datum;
+  rest.items.erase(std::remove_if(rest.items.begin(), rest.items.end(), is_inert),
+                   rest.items.end());
+  return ReadEffects(in, rest);
 }
 
 }  // namespace hires::planning::shop2

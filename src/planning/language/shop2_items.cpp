@@ -53,7 +53,9 @@ void CheckOperatorName(const Construct& in, const Datum& head) {
 
 /// Parts after the head: SHOP tells the forms apart by their number, and three of them by whether
 /// the last is a number.
-void ReadParts(const Construct& in, const Datum& item, Operator* op) {
+/// @param warnings  takes what is passed over.
+void ReadParts(const Construct& in, const Datum& item, Operator* op,
+               std::vector<std::string>* warnings) {
   const std::size_t count = item.items.size() - 2;
   if (count < 2 || count > 4) {
     Fail(in, item.place,
@@ -64,7 +66,7 @@ void ReadParts(const Construct& in, const Datum& item, Operator* op) {
   const bool has_precondition = count == 4 || (count == 3 && !is_old_with_cost);
   std::size_t next = 2;
   if (has_precondition) op->precondition = ReadPrecondition(in, item.items[next++]);
-  op->deletes = ReadEffects(in, item.items[next++]);
+  op->deletes = ReadDeletes(in, item.items[next++], warnings);
   op->adds = ReadEffects(in, item.items[next++]);
   if (next < item.items.size()) op->cost = ReadExpression(item.items[next]);
 }
@@ -89,10 +91,11 @@ void CheckKeywords(const Construct& in, const Datum& item) {
   }
 }
 
-void ReadKeywordParts(const Construct& in, const Datum& item, Operator* op) {
+void ReadKeywordParts(const Construct& in, const Datum& item, Operator* op,
+                      std::vector<std::string>* warnings) {
   CheckKeywords(in, item);
   if (const Datum* goals = Find(item, ":precond")) op->precondition = ReadConjunction(in, *goals);
-  if (const Datum* atoms = Find(item, ":delete")) op->deletes = ReadEffects(in, *atoms);
+  if (const Datum* atoms = Find(item, ":delete")) op->deletes = ReadDeletes(in, *atoms, warnings);
   if (const Datum* atoms = Find(item, ":add")) op->adds = ReadEffects(in, *atoms);
   if (const Datum* cost = Find(item, ":cost")) op->cost = ReadExpression(*cost);
 }
@@ -139,7 +142,8 @@ Axiom::Branch ReadTail(const Construct& in, const Datum& item, std::size_t* next
 
 }  // namespace
 
-Operator ReadOperator(const std::string& source, const Datum& item) {
+Operator ReadOperator(const std::string& source, const Datum& item,
+                      std::vector<std::string>* warnings) {
   const Construct in = ConstructOf(source, "operator", item, 1);
   const bool has_keywords = item.Head() == ":op";
   Operator op;
@@ -148,9 +152,9 @@ Operator ReadOperator(const std::string& source, const Datum& item) {
   op.head = HeadAt(in, item, 1, has_keywords ? kOpWanted : kOperatorWanted);
   CheckOperatorName(in, op.head);
   if (has_keywords) {
-    ReadKeywordParts(in, item, &op);
+    ReadKeywordParts(in, item, &op, warnings);
   } else {
-    ReadParts(in, item, &op);
+    ReadParts(in, item, &op, warnings);
   }
   return op;
 }

@@ -31,6 +31,12 @@ void CheckTerm(const Construct& in, const Datum& datum, std::string_view wanted)
 /// The same for atoms, whose name is no logical word either.
 void CheckAtom(const Construct& in, const Datum& datum, std::string_view wanted);
 
+/// Writes the terms of a domain in JSHOP2's language as Lisp does: the value in (assign ?x value)
+/// and what a call gets are quoted, and lists made of their items. A domain in another language
+/// stays as it is: one without (call ...), or one that computes by anything else.
+/// @param warnings  takes one where a list was such a term that looks as if it were computed.
+void WriteBareTerms(const std::string& source, Datum* domain, std::vector<std::string>* warnings);
+
 /// An expression without SHOP's word `call`: (call + ?x 1) is (+ ?x 1).
 Datum ReadExpression(Datum datum);
 
@@ -39,9 +45,15 @@ Precondition ReadPrecondition(const Construct& in, const Datum& datum);
 Precondition ReadConjunction(const Construct& in, const Datum& datum);
 
 std::vector<Effect> ReadEffects(const Construct& in, const Datum& datum);
+/// Without atoms named by a logical word, which SHOP deletes in vain: no fact has such a name.
+/// @param warnings  takes one where there are any.
+std::vector<Effect> ReadDeletes(const Construct& in, const Datum& datum,
+                                std::vector<std::string>* warnings);
 TaskNetwork ReadNetwork(const Construct& in, const Datum& datum);
 
-Operator ReadOperator(const std::string& source, const Datum& item);
+/// @param warnings  takes what is passed over.
+Operator ReadOperator(const std::string& source, const Datum& item,
+                      std::vector<std::string>* warnings);
 Method ReadMethod(const std::string& source, const Datum& item);
 Axiom ReadAxiom(const std::string& source, const Datum& item);
 

@@ -3,10 +3,15 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <iterator>
 #include <utility>
 
+#include "hires/base/error.h"
+#include "hires/base/spelling.h"
+#include "hires/base/text.h"
 #include "hires/planning/datum_reader.h"
+#include "planning/language/faults.h"
 #include "planning/language/shop2_parts.h"
 
 namespace hires::planning {
@@ -14,6 +19,7 @@ namespace {
 
 using shop2::Construct;
 
+constexpr std::array<std::string_view, 3> kDefinitions{"defdomain", "defproblem", "make-problem"};
 constexpr std::string_view kDomainWanted = "(defdomain name (items...))";
 constexpr std::string_view kProblemWanted = "(defproblem name [domain] (facts...) (tasks...))";
 
@@ -21,19 +27,121 @@ bool IsDomain(const Datum& form) { return form.Head() == "defdomain"; }
 bool IsProblem(const Datum& form) {
   return form.Head() == "defproblem" || form.Head() == "make-problem";
 }
+bool IsDefinition(std::string_view head) {
+  return std::find(kDefinitions.begin(), kDefinitions.end(), head) != kDefinitions.end();
+}
 
-/// The forms of a file, with anything that is neither domain nor problem refused.
-std::vector<Datum> ReadForms(std::string_view text, const std::string& source) {
-  std::vector<Datum> forms = ReadData(text, source);
-  for (const Datum& form : forms) {
-    if (IsDomain(form) || IsProblem(form) || form.Head() == "in-package") continue;
-    FailAt(source, form.place,
-           fmt::format("came {}, wanted {} or {}; a planning file holds nothing else and runs no "
-                       "code, so take this away",
+/// What stands before the body of a form of Lisp that may hold definitions; 0: it is none.
+std::size_t BodyOf(std::string_view head) {
+  if (head == "progn" || head == "locally") return 1;
+  return head == "let" || head == "let*" || head == "eval-when" ? 2 : 0;
+}
+
+/// The definitions of a file, and what of its rest is told.
+class FormCollector {
+ public:
+  FormCollector(std::string_view text, const std::string& source) : source_(source) {
+    file_.definitions.assign(kDefinitions.begin(), kDefinitions.end());
+    for (Datum& form : ReadLispFile(text, source, &file_)) {
+      Require(form);
+      Collect(std::move(form));
+    }
+  }
+
+  std::vector<Datum>& definitions() { return definitions_; }
+  /// Nothing but definitions stands in it.
+  bool is_plain() const { return is_plain_; }
+
+  /// One for each kind of thing that is left out.
+  std::vector<std::string> Warnings() const {
+    std::vector<std::string> warnings;
+    if (!passed_over_.empty()) {
+      std::vector<std::string> forms;
+      for (const auto& [name, places] : passed_over_) {
+        forms.push_back(fmt::format("({} ...) in {}", Excerpt(MakeSymbol(name)), LinesOf(places)));
+      }
+      warnings.push_back(Located(source_, first_passed_over_,
+                                 "no code is run, so that these forms are passed over, and what "
+                                 "they would define is missing: " +
+                                     Shortened(std::move(forms), ", ")));
+    }
+    AddMarks(file_.skipped, "left out, as no feature is there: the form after #+ or #- in ",
+             &warnings);
+    AddMarks(file_.kept, "read, as no feature is there: the form after #+ or #- in ", &warnings);
+    return warnings;
+  }
+
+ private:
+  static constexpr std::size_t kMostTold = 8;
+
+  static std::string Shortened(std::vector<std::string> parts, const std::string& between) {
+    const std::size_t count = parts.size();
+    if (count > kMostTold) {
+      parts.resize(kMostTold);
+      parts.push_back(fmt::format("{} more", count - kMostTold));
+    }
+    return base::Join(parts, between);
+  }
+
+  static std::string LinesOf(const std::vector<Place>& places) {
+    std::vector<std::string> lines;
+    for (const Place& place : places) lines.push_back(std::to_string(place.line));
+    const std::string noun = lines.size() == 1 ? "line " : "lines ";
+    return noun + Shortened(std::move(lines), ", ");
+  }
+
+  void AddMarks(const std::vector<Place>& places, const std::string& what,
+                std::vector<std::string>* warnings) const {
+    if (places.empty()) return;
+    warnings->push_back(Located(source_, places.front(), what + LinesOf(places)));
+  }
+
+  /// Refuses what is no form of Lisp, and what is likely to be a definition, or a part of one, that
+  /// went wrong: it must not be lost.
+  void Require(const Datum& form) const {
+    const std::string head(WithoutPackage(form.Head()));
+    const bool is_slip =
+        !IsDefinition(head) &&
+        std::any_of(kDefinitions.begin(), kDefinitions.end(), [&](std::string_view known) {
+          return base::AreSpeltAlike(head, std::string(known));
+        });
+    if (!head.empty() && head.front() != ':' && head != "define" && !is_slip) return;
+    FailAt(source_, form.place,
+           fmt::format("came {}, wanted {} or {}; correct it, look for a ')' too many above, or "
+                       "take it away",
                        Excerpt(form), kDomainWanted, kProblemWanted));
   }
-  return forms;
-}
+
+  void Collect(Datum form) {
+    const std::string head(WithoutPackage(form.Head()));
+    is_plain_ = is_plain_ && IsDefinition(head);
+    if (IsDefinition(head)) {
+      form.items[0].text = head;
+      definitions_.push_back(std::move(form));
+      return;
+    }
+    if (const std::size_t body = BodyOf(head); body > 0) {
+      for (std::size_t i = body; i < form.items.size(); ++i) Collect(std::move(form.items[i]));
+      return;
+    }
+    if (head.empty() || head == "in-package") return;
+    if (passed_over_.empty()) first_passed_over_ = form.place;
+    const std::string name(form.Head());
+    const auto same = std::find_if(passed_over_.begin(), passed_over_.end(),
+                                   [&](const auto& other) { return other.first == name; });
+    auto& places = same == passed_over_.end()
+                       ? passed_over_.emplace_back(name, std::vector<Place>()).second
+                       : same->second;
+    places.push_back(form.place);
+  }
+
+  const std::string& source_;
+  LispFile file_;
+  std::vector<Datum> definitions_;
+  bool is_plain_{true};
+  Place first_passed_over_;
+  std::vector<std::pair<std::string, std::vector<Place>>> passed_over_;  // by name, in order
+};
 
 /// `name` or `(name options...)`.
 const Datum& NameIn(const Construct& in, const Datum& datum) {
@@ -50,7 +158,8 @@ const Datum& NameIn(const Construct& in, const Datum& datum) {
 void ReadItem(const Construct& in, const Datum& item, Domain* domain) {
   const std::string_view head = item.Head();
   if (head == ":operator" || head == ":op") {
-    domain->operators.push_back(shop2::ReadOperator(in.source, shop2::WithOwnNames(item)));
+    domain->operators.push_back(
+        shop2::ReadOperator(in.source, shop2::WithOwnNames(item), &domain->warnings));
   } else if (head == ":method") {
     domain->methods.push_back(shop2::ReadMethod(in.source, shop2::WithOwnNames(item)));
   } else if (head == ":-") {
@@ -60,7 +169,7 @@ void ReadItem(const Construct& in, const Datum& item, Domain* domain) {
   }
 }
 
-Domain ReadDomain(const Datum& form, const std::string& source) {
+Domain ReadDomain(Datum form, bool is_plain, const std::string& source) {
   const Construct unnamed{source, "domain"};
   if (form.items.size() < 3 || !form.tail.empty()) {
     shop2::FailAbout(unnamed, form, kDomainWanted);
@@ -77,7 +186,11 @@ Domain ReadDomain(const Datum& form, const std::string& source) {
   if (!(items.IsList() && items.tail.empty()) && !items.IsNil()) {
     shop2::FailAbout(in, items, "a list of operators, methods and axioms");
   }
-  for (const Datum& item : items.items) ReadItem(in, item, &domain);
+  // Only Lisp has other forms.
+  if (is_plain) shop2::WriteBareTerms(source, &form.items[2], &domain.warnings);
+  Faults faults;
+  for (const Datum& item : items.items) faults.Collect([&] { ReadItem(in, item, &domain); });
+  faults.Require();
   shop2::CheckDomain(&domain);
   return domain;
 }
@@ -98,44 +211,129 @@ Datum DomainOption(const Datum& name) {
   return {};
 }
 
-std::vector<Datum> ReadFacts(const Construct& in, const Datum& facts) {
+/// SHOP takes an atom that is named like a logical word for a fact that nothing can ask for.
+void WarnOfInertFacts(const Construct& in, const std::vector<const Datum*>& facts,
+                      std::vector<std::string>* warnings) {
+  if (facts.empty()) return;
+  const std::string more = facts.size() == 1 ? "" : fmt::format(" ({} such)", facts.size());
+  warnings->push_back(Located(
+      in.source, facts.front()->place,
+      fmt::format("{}: the fact {}{} begins with a logical word, so that no condition can ask for "
+                  "it, and is passed over; take it away",
+                  in.name, Excerpt(*facts.front()), more)));
+}
+
+std::vector<Datum> ReadFacts(const Construct& in, const Datum& facts,
+                             std::vector<std::string>* warnings) {
   constexpr std::string_view kFactWanted = "a fact (predicate arguments...) without variables";
   const bool is_list = facts.IsNil() || (facts.IsList() && facts.tail.empty());
-  if (!is_list || !facts.Head().empty()) {
+  const std::string_view head = facts.Head();
+  if (!is_list || (!head.empty() && head != "nil")) {
     shop2::FailAbout(in, facts, "a list of facts, as in ((on a b) (clear a)), or nil");
   }
   std::vector<Datum> atoms;
+  std::vector<const Datum*> inert;
   for (const Datum& fact : facts.items) {
+    if (fact.IsNil()) continue;
+    if (shop2::IsLogicalWord(fact.Head())) {
+      inert.push_back(&fact);
+      continue;
+    }
     shop2::CheckAtom(in, fact, kFactWanted);
     if (!fact.tail.empty() || !IsGround(fact)) shop2::FailAbout(in, fact, kFactWanted);
     atoms.push_back(shop2::Unquoted(fact));
   }
+  WarnOfInertFacts(in, inert, warnings);
   return atoms;
 }
 
-Problem ReadProblem(const Datum& form, const std::string& source) {
+/// The name and the domain of a (defproblem ...), and where its facts and tasks begin.
+struct ProblemHead {
+  std::string name;
+  Datum domain;
+  std::size_t next{0};
+};
+
+ProblemHead ReadProblemHead(const Datum& form, const std::string& source) {
   const std::size_t size = form.items.size();
   const Construct unnamed{source, "problem"};
-  if ((size != 4 && size != 5) || !form.tail.empty()) {
+  const bool has_domain = size % 2 == 1;
+  const bool is_whole = has_domain || size == 4 || (size > 4 && form.items[2].IsList());
+  if (size < 4 || !is_whole || !form.tail.empty()) {
     shop2::FailAbout(unnamed, form, kProblemWanted);
   }
   const Datum& name = WithoutQuote(form.items[1]);
+  ProblemHead head;
+  head.name = NameIn(unnamed, name).text;
+  const Construct in{source, fmt::format("problem '{}'", head.name)};
+  head.domain = has_domain ? NameIn(in, WithoutQuote(form.items[2])) : DomainOption(name);
+  head.next = has_domain ? 3 : 2;
+  return head;
+}
+
+/// The `number`-th pair of facts and tasks of a form, counted from 0.
+Problem ReadProblem(const Datum& form, const ProblemHead& head, std::size_t number,
+                    const std::string& source) {
   Problem problem;
-  problem.name = NameIn(unnamed, name).text;
+  problem.name = number == 0 ? head.name : fmt::format("{}-{}", head.name, number + 1);
   problem.source = source;
+  problem.domain = head.domain.text;
+  problem.domain_place = head.domain.place;
   const Construct in{source, fmt::format("problem '{}'", problem.name)};
-  const Datum domain = size == 5 ? NameIn(in, WithoutQuote(form.items[2])) : DomainOption(name);
-  problem.domain = domain.text;
-  problem.domain_place = domain.place;
-  problem.facts = ReadFacts(in, WithoutQuote(form.items[size - 2]));
-  problem.tasks = shop2::ReadNetwork(in, shop2::WithOwnNames(WithoutQuote(form.items[size - 1])));
+  const std::size_t facts = head.next + 2 * number;
+  try {
+    problem.facts = ReadFacts(in, WithoutQuote(form.items[facts]), &problem.warnings);
+    problem.tasks =
+        shop2::ReadNetwork(in, shop2::WithOwnNames(WithoutQuote(form.items[facts + 1])));
+  } catch (const base::ConfigError& error) {
+    problem.fault = error.what();
+  }
   return problem;
+}
+
+/// JSHOP2 allows several pairs of facts and tasks in one form.
+void ReadProblemForm(const Datum& form, const std::string& source, std::vector<Problem>* problems) {
+  try {
+    const ProblemHead head = ReadProblemHead(form, source);
+    for (std::size_t i = 0; head.next + 2 * i < form.items.size(); ++i) {
+      problems->push_back(ReadProblem(form, head, i, source));
+    }
+  } catch (const base::ConfigError& error) {
+    problems->emplace_back().fault = error.what();
+  }
+}
+
+/// A definition at any place where FormCollector finds one.
+bool HoldsDefinition(const Datum& form) {
+  const std::string_view head = WithoutPackage(form.Head());
+  if (IsDefinition(head) || head == "in-package") return true;
+  const std::size_t body = BodyOf(head);
+  if (body == 0 || body > form.items.size()) return false;
+  return std::any_of(form.items.begin() + static_cast<std::ptrdiff_t>(body), form.items.end(),
+                     HoldsDefinition);
 }
 
 }  // namespace
 
+void RequireOneWithoutFault(const std::vector<Problem>& problems) {
+  Faults faults;
+  for (const Problem& problem : problems) {
+    if (problem.fault.empty()) return;
+    faults.Add(problem.fault);
+  }
+  faults.Require();
+}
+
+bool IsShop2File(std::string_view text, const std::string& source) {
+  LispFile file;
+  file.definitions.assign(kDefinitions.begin(), kDefinitions.end());
+  const std::vector<Datum> forms = ReadLispFile(text, source, &file);
+  return std::any_of(forms.begin(), forms.end(), HoldsDefinition);
+}
+
 Domain ReadShop2Domain(std::string_view text, const std::string& source) {
-  const std::vector<Datum> forms = ReadForms(text, source);
+  FormCollector file(text, source);
+  std::vector<Datum>& forms = file.definitions();
   const auto domain = std::find_if(forms.begin(), forms.end(), IsDomain);
   if (domain == forms.end()) {
     FailAt(source, {1, 1},
@@ -147,18 +345,26 @@ Domain ReadShop2Domain(std::string_view text, const std::string& source) {
            fmt::format("a second domain, the first stands in line {}; keep one in a file",
                        domain->place.line));
   }
-  return ReadDomain(*domain, source);
+  Domain read = ReadDomain(std::move(*domain), file.is_plain(), source);
+  for (const std::string& warning : file.Warnings()) read.warnings.push_back(warning);
+  return read;
 }
 
 std::vector<Problem> ReadShop2Problems(std::string_view text, const std::string& source) {
   std::vector<Problem> problems;
-  for (const Datum& form : ReadForms(text, source)) {
-    if (IsProblem(form)) problems.push_back(ReadProblem(form, source));
+  FormCollector file(text, source);
+  for (const Datum& form : file.definitions()) {
+    if (IsProblem(form)) ReadProblemForm(form, source, &problems);
+  }
+  const std::vector<std::string> warnings = file.Warnings();
+  for (Problem& problem : problems) {
+    problem.warnings.insert(problem.warnings.begin(), warnings.begin(), warnings.end());
   }
   if (problems.empty()) {
     FailAt(source, {1, 1},
            fmt::format("holds no problem, wanted {}; name another file", kProblemWanted));
   }
+  RequireOneWithoutFault(problems);
   return problems;
 }
 

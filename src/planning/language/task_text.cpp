@@ -42,7 +42,10 @@ Datum ReadGroundTerm(std::string_view text, const std::string& source) {
 const Problem& FindProblem(const std::vector<Problem>& problems, const std::string& name) {
   std::vector<std::string> names;
   for (const Problem& problem : problems) {
-    if (base::ToLower(problem.name) == base::ToLower(name)) return problem;
+    if (base::ToLower(problem.name) == base::ToLower(name)) {
+      if (!problem.fault.empty()) throw base::ConfigError(problem.fault);
+      return problem;
+    }
     names.push_back(problem.name);
   }
   throw base::ConfigError(base::UnknownName("problem", name, names));

@@ -12,6 +12,9 @@ MethodChoice Decomposer::Begin(std::uint32_t node,
                                const std::vector<const CompiledMethod*>& methods) {
   MethodChoice choice{path_.Now(), node, &methods};
   choice.method = NextFitting(choice, 0);
+  if (choice.method >= methods.size() && trace_.active()) {
+    trace_.Note(path_.Task(node), "", "its arguments fit the head of no method");
+  }
   return choice;
 }
 

@@ -4,6 +4,12 @@
 
 namespace hires::planning {
 
+void FoundPlans::TakeOver(FoundPlans* earlier, std::vector<Plan> plans) {
+  plans_ = std::move(plans);
+  keys_ = std::move(earlier->keys_);
+  best_cost_ = earlier->best_cost_;
+}
+
 void FoundPlans::Offer() {
   if (request_.which == Which::kAll && !keys_.insert(extractor_.Key()).second) return;
   if (IsTooDear(path_.cost())) return;  // the first of the cheapest stays

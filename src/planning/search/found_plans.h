@@ -19,6 +19,8 @@ class FoundPlans {
   FoundPlans(const PlanRequest& request, SearchPath* path)
       : request_(request), path_(*path), extractor_(path) {}
 
+  /// What an earlier search found. @param plans  as Take() gave them.
+  void TakeOver(FoundPlans* earlier, std::vector<Plan> plans);
   /// The plan at the end of the path, unless there is one as good.
   void Offer();
   /// No other plan is wanted.

@@ -40,24 +40,28 @@ StopQuestion WithMemoryLimit(std::size_t max_bytes, StopQuestion next) {
 
 namespace {
 
-/// A first plan of an HDDL domain: at first without left recursion, which the competition's domains
-/// are full of and on which a search from left to right may never come back; then, if that found
-/// nothing and left something out, with it.
-PlanResult FindFirstHddlPlan(const Program& program, TermTable* terms, const PlanRequest& request) {
+/// Plans of an HDDL domain: at first without left recursion, which the competition's domains are
+/// full of and on which a search from left to right may never come back; then, if more is wanted
+/// and something was left out, with it, in addition to what was found.
+PlanResult FindHddlPlans(const Program& program, TermTable* terms, const PlanRequest& request) {
   Search careful(program, terms, request, false);
   PlanResult result = careful.Run();
-  if (result.outcome != PlanOutcome::kNoPlan || !careful.gave_up_recursion()) return result;
+  const bool is_answered = request.which == Which::kFirst
+                               ? result.outcome != PlanOutcome::kNoPlan
+                               : careful.stopped() || careful.has_enough();
+  if (is_answered || !careful.gave_up_recursion()) return result;
   const Progress before = result.progress;
-  result = Search(program, terms, request).Run();
+  Search whole(program, terms, request);
+  whole.BeginWith(&careful, std::move(result.plans));
+  result = whole.Run();
   result.progress.expansions += before.expansions;
   result.progress.inferences += before.inferences;
   return result;
 }
 
 PlanResult FindPlans(const Program& program, TermTable* terms, const PlanRequest& request) {
-  const bool is_first = request.which == Which::kFirst;
-  if (is_first && program.domain().language == Domain::Language::kHddl) {
-    return FindFirstHddlPlan(program, terms, request);
+  if (program.domain().language == Domain::Language::kHddl) {
+    return FindHddlPlans(program, terms, request);
   }
   return Search(program, terms, request).Run();
 }

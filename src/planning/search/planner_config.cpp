@@ -18,6 +18,7 @@ std::string PathFrom(const std::string& config_path, const std::string& path) {
 
 void AddProblems(const std::string& path, PlanningKnowledge* knowledge) {
   for (Problem& problem : LoadProblems(path, knowledge->domain)) {
+    if (!problem.fault.empty()) throw base::ConfigError(problem.fault);
     for (const Problem& other : knowledge->problems) {
       if (other.name != problem.name) continue;
       throw base::ConfigError(

@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <utility>
 #include <variant>
 #include <vector>
 
@@ -27,7 +28,14 @@ class Search {
   Search(const Program& program, TermTable* terms, const PlanRequest& request,
          bool left_recursion = true, bool keep_deepest = false);
   PlanResult Run();
+  /// Keeps what an earlier search for the same found: it is not found again, and what is no cheaper
+  /// is not sought where the cheapest is wanted. @param plans  its result's.
+  void BeginWith(Search* earlier, std::vector<Plan> plans) {
+    plans_.TakeOver(&earlier->plans_, std::move(plans));
+  }
   bool gave_up_recursion() const { return gave_up_recursion_; }
+  bool stopped() const { return limits_.stopped(); }
+  bool has_enough() const { return plans_.enough(); }
 
  private:
   /// A place where several tasks were ready; `node` is the one that was taken.

@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "hires/base/averages.h"
+#include "base/averages.h"
 #include "hires/base/rng.h"
 
 namespace hires::reports {

@@ -4,10 +4,12 @@
 #include <cmath>
 #include <filesystem>
 
+#include "hires/base/log.h"
 #include "hires/base/text.h"
 #include "hires/robot/load_robot.h"
 #include "robot/assumptions.h"
 #include "robot/drive_guess.h"
+#include "robot/profile/bare_robot.h"
 #include "robot/urdf/urdf_file.h"
 
 namespace hires::robot {
@@ -66,6 +68,21 @@ std::string FootprintComment(const geometry::Polygon& footprint) {
       base::Join(corners, ", "));
 }
 
+/// What no shape says is a line to be filled in: as long as it is empty, the robot is refused.
+void AddFootprint(const geometry::Polygon& footprint, const std::string& urdf, LineWriter* out) {
+  if (!footprint.empty()) {
+    out->AddAssumed("footprint: []", FootprintComment(footprint));
+    return;
+  }
+  out->Add("footprint: []",
+           "[m] FILL IN, as no <collision> of the URDF says it: its corners from above, x forward, "
+           "y left, as in [[0.3, 0.2], [-0.3, 0.2], [-0.3, -0.2], [0.3, -0.2]]");
+  base::Log(base::LogLevel::kWarn,
+            fmt::format("urdf={} no collision shape says how large the robot is; fill in its "
+                        "profile's line `footprint`, without which it cannot be loaded",
+                        urdf));
+}
+
 void AddMotionSet(const std::string& indent, const MotionSet& set, LineWriter* out) {
   const auto line = [&](const char* key, double value, const char* unit) {
     out->AddAssumed(fmt::format("{}{}: {}", indent, key, value), unit);
@@ -106,9 +123,9 @@ void AddController(const Robot& robot, LineWriter* out) {
     out->AddAssumed(fmt::format("  {}: {}", key, value), comment);
   };
   out->AddAssumed("base_controller:", "how the base follows commands");
-  out->AddAssumed(
-      "  drive: " + ToString(params.drive),
-      "omnidirectional, differential or car_like; guessed from " + GuessDrive(robot.model).why);
+  out->AddAssumed("  drive: " + ToString(params.drive),
+                  "omnidirectional, differential or car_like; guessed from " +
+                      GuessDrive(robot.model, robot.profile.base_link).why);
   if (params.drive == Drive::kCarLike)
     line("min_turning_radius", params.min_turning_radius, "[m] guessed from its wheels");
   out->AddAssumed("  limits:", "what it can do at most");
@@ -138,10 +155,10 @@ void AddJoints(const Robot& robot, LineWriter* out) {
 }  // namespace
 
 std::string WriteProfile(const std::string& path, const std::string& folder) {
-  const Robot robot = LoadRobotFromUrdf(path);
-  const RobotProfile& profile = robot.profile;
   UrdfFile file = SplitArguments(path);
   const std::string xml = ReadUrdfFile(file);
+  const Robot robot = LoadRobotToDescribe(file, xml);
+  const RobotProfile& profile = robot.profile;
   file.path = fs::proximate(fs::absolute(file.path), fs::absolute(folder.empty() ? "." : folder))
                   .generic_string();
   LineWriter out;
@@ -159,7 +176,7 @@ std::string WriteProfile(const std::string& path, const std::string& folder) {
           : "the base, which is taken to lie on the floor");
   AddTray(profile, &out);
   AddLaser(robot, xml, &out);
-  out.AddAssumed("footprint: []", FootprintComment(profile.footprint));
+  AddFootprint(profile.footprint, path, &out);
   out.Add(fmt::format("footprint_padding: {}", profile.footprint_padding),
           "[m] kept round the footprint");
   out.AddAssumed("motion_sets:", "how fast actions may drive, by the name that they give");

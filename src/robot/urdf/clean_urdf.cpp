@@ -7,16 +7,16 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <locale>
 #include <optional>
 #include <set>
 #include <sstream>
 
 #include "hires/base/check.h"
-#include "hires/base/log.h"
 #include "hires/base/text.h"
 #include "hires/geometry/inertia.h"
 #include "hires/geometry/pose.h"
+#include "robot/urdf/told.h"
+#include "robot/urdf/xml_numbers.h"
 
 namespace hires::robot {
 namespace {
@@ -32,25 +32,9 @@ const std::map<std::string, std::set<std::string>>& Kept() {
   return kept;
 }
 
+constexpr char kNoEnd[] = "1e16", kNoEndBelow[] = "-1e16";  // as others write joints without end
+constexpr double kManyTurns = 1e3;  // [rad] that a joint may turn to both sides, and so on and on
 constexpr double kFarthestCentre = 1e3;  // [m] of a centre of mass: beyond lies a slip of units
-
-/// `count` numbers and nothing else.
-std::optional<std::vector<double>> NumbersIn(const char* text, std::size_t count) {
-  if (text == nullptr) return std::nullopt;
-  std::istringstream in(text);
-  in.imbue(std::locale::classic());
-  std::vector<double> numbers(count, 0.0);
-  for (double& number : numbers) in >> number;
-  if (in.fail() || !(in >> std::ws).eof()) return std::nullopt;
-  return numbers;
-}
-
-std::optional<double> NumberIn(const XMLElement* element, const char* attribute) {
-  const auto numbers =
-      element == nullptr ? std::nullopt : NumbersIn(element->Attribute(attribute), 1);
-  if (!numbers || !std::isfinite(numbers->front())) return std::nullopt;
-  return numbers->front();
-}
 
 /// Whether a shape is a point or a line. A plate of no height is another thing: something lies on
 /// it.
@@ -62,20 +46,6 @@ bool IsOfNoSize(const XMLElement& shape) {
   }
   return (kind == "sphere" || kind == "cylinder" || kind == "capsule") &&
          NumberIn(&shape, "radius") == 0.0;
-}
-
-/// Of an element's <origin>; the identity where it has none.
-std::optional<geometry::Pose3> OriginOf(const XMLElement& element) {
-  const XMLElement* origin = element.FirstChildElement("origin");
-  if (origin == nullptr) return geometry::Pose3();
-  const auto read = [&](const char* attribute) {
-    return origin->Attribute(attribute) == nullptr ? std::vector<double>{0.0, 0.0, 0.0}
-                                                   : NumbersIn(origin->Attribute(attribute), 3);
-  };
-  const auto xyz = read("xyz"), rpy = read("rpy");
-  if (!xyz || !rpy) return std::nullopt;
-  return geometry::Pose3{{(*xyz)[0], (*xyz)[1], (*xyz)[2]},
-                         geometry::RotationFromRpy((*rpy)[0], (*rpy)[1], (*rpy)[2])};
 }
 
 /// What makes an <inertial> one that no body has.
@@ -113,25 +83,6 @@ std::string NameOf(const XMLElement& element) {
   const char* name = element.Attribute("name");
   return name == nullptr ? "" : name;
 }
-
-/// What was changed of one kind, told at the end as one line.
-struct Told {
-  std::vector<std::string> names;
-  std::string first;  ///< "line 7: mass is 0 kg"
-
-  void Add(const XMLElement& element, const std::string& name, const std::string& what) {
-    if (names.empty()) {
-      first = fmt::format("line {}{}", element.GetLineNum(), what.empty() ? "" : ": " + what);
-    }
-    names.push_back(name);
-  }
-  void Tell(const std::string& where, const char* key, const char* reason) const {
-    if (names.empty()) return;
-    base::Log(base::LogLevel::kWarn,
-              fmt::format("urdf={} {}={} count={} first=\"{}\" reason=\"{}\"", where, key,
-                          base::Join(names, ","), names.size(), first, reason));
-  }
-};
 
 class UrdfCleaner {
  public:
@@ -283,9 +234,9 @@ class UrdfCleaner {
       const XMLElement* geometry = collision->FirstChildElement("geometry");
       const XMLElement* shape = geometry == nullptr ? nullptr : geometry->FirstChildElement();
       if (shape == nullptr) {
-        shapeless_.Add(*collision, NameOf(*link), "");
+        shapeless_.Add(collision->GetLineNum(), NameOf(*link), "");
       } else if (IsOfNoSize(*shape)) {
-        sizeless_.Add(*shape, NameOf(*link), shape->Name());
+        sizeless_.Add(shape->GetLineNum(), NameOf(*link), shape->Name());
       }
       if (shape == nullptr || IsOfNoSize(*shape)) link->DeleteChild(collision);
       collision = next;
@@ -295,7 +246,7 @@ class UrdfCleaner {
   void CheckInertial(XMLElement* link, XMLElement* inertial) {
     const Doubt doubt = DoubtOf(*inertial);
     if (doubt.why.empty()) return;
-    inertials_.Add(*inertial, NameOf(*link), doubt.why);
+    inertials_.Add(inertial->GetLineNum(), NameOf(*link), doubt.why);
     if (doubt.is_useless) link->DeleteChild(inertial);
   }
 
@@ -361,11 +312,6 @@ class UrdfCleaner {
     const char* type = joint->Attribute("type");
     const std::string kind = type == nullptr ? "" : type;
     CheckOrigin(joint, owner);
-    CheckNumbers(joint->FirstChildElement("axis"), "xyz", 3, owner, "0 0 1");
-    for (const char* key : {"lower", "upper", "effort", "velocity"})
-      CheckNumbers(joint->FirstChildElement("limit"), key, 1, owner, "0");
-    for (const char* key : {"multiplier", "offset"})
-      CheckNumbers(joint->FirstChildElement("mimic"), key, 1, owner, "1");
     static const std::set<std::string> known{"fixed",      "revolute", "prismatic",
                                              "continuous", "floating", "planar"};
     if (known.count(kind) == 0) {
@@ -373,25 +319,110 @@ class UrdfCleaner {
                     fmt::format("no valid URDF: {}: its type is '{}', wanted fixed, revolute, "
                                 "continuous or prismatic",
                                 owner, kind));
-      joint->SetAttribute("type", "fixed");
     }
-    if (kind == "floating" || kind == "planar") {
-      loose_.Add(*joint, NameOf(*joint), kind);
-      joint->SetAttribute("type", "fixed");
+    if (kind == "floating" || kind == "planar")
+      loose_.Add(joint->GetLineNum(), NameOf(*joint), kind);
+    if (kind != "revolute" && kind != "prismatic" && kind != "continuous") return Fix(joint);
+    CheckNumbers(joint->FirstChildElement("axis"), "xyz", 3, owner, "0 0 1");
+    for (const char* key : {"multiplier", "offset"})
+      CheckNumbers(joint->FirstChildElement("mimic"), key, 1, owner, "1");
+    const XMLElement* axis = joint->FirstChildElement("axis");
+    if (axis != nullptr && !IsDirection(*axis)) {
+      axisless_.Add(axis->GetLineNum(), NameOf(*joint), "");
+      return Fix(joint);
     }
-    if (kind != "revolute" && kind != "prismatic" && kind != "continuous") {
-      DeleteAllBut({"origin", "axis", "parent", "child"}, joint);
-      return;
-    }
+    CleanLimit(joint, kind);
+  }
+
+  /// What is left of a joint that does not move.
+  static void Fix(XMLElement* joint) {
+    joint->SetAttribute("type", "fixed");
+    DeleteAllBut({"origin", "parent", "child"}, joint);
+  }
+
+  static bool IsDirection(const XMLElement& axis) {
+    const auto xyz = NumbersIn(axis.Attribute("xyz"), 3);
+    if (!xyz) return false;
+    const double length = Eigen::Vector3d((*xyz)[0], (*xyz)[1], (*xyz)[2]).norm();
+    return length > 1e-6 && std::isfinite(length);
+  }
+
+  void CleanLimit(XMLElement* joint, const std::string& kind) {
     XMLElement* limit = joint->FirstChildElement("limit");
     if (limit == nullptr) {
       if (kind == "continuous") return;
-      unlimited_.Add(*joint, NameOf(*joint), kind);
+      unlimited_.Add(joint->GetLineNum(), NameOf(*joint), kind);
       limit = joint->InsertNewChildElement("limit");
     }
+    std::string unusable;
     for (const char* key : {"effort", "velocity"}) {
-      if (limit->Attribute(key) == nullptr) limit->SetAttribute(key, "0");
+      const char* text = limit->Attribute(key);
+      const auto value = NumberIn(limit, key);
+      if (value && *value >= 0.0) continue;
+      if (text != nullptr && unusable.empty()) unusable = fmt::format("{} is '{}'", key, text);
+      limit->SetAttribute(key, "0");
     }
+    if (!unusable.empty()) unusable_.Add(limit->GetLineNum(), NameOf(*joint), unusable);
+    if (kind != "continuous") {
+      CleanRange(NameOf(*joint), limit);
+      if (kind == "revolute" && TurnsOn(*limit)) joint->SetAttribute("type", "continuous");
+      return;
+    }
+    const bool is_range = IsNumberOrLeftOut(*limit, "lower") &&
+                          IsNumberOrLeftOut(*limit, "upper") && !IsSwapped(*limit);
+    if (is_range) return;
+    limit->DeleteAttribute("lower");  // it turns without end
+    limit->DeleteAttribute("upper");
+  }
+
+  static bool IsNumberOrLeftOut(const XMLElement& element, const char* attribute) {
+    return element.Attribute(attribute) == nullptr || NumberIn(&element, attribute).has_value();
+  }
+
+  static bool IsSwapped(const XMLElement& limit) {
+    return NumberIn(&limit, "lower").value_or(0.0) > NumberIn(&limit, "upper").value_or(0.0);
+  }
+
+  /// Limits that no joint reaches: other tools write wheels so.
+  static bool TurnsOn(const XMLElement& limit) {
+    return NumberIn(&limit, "lower").value_or(0.0) <= -kManyTurns &&
+           NumberIn(&limit, "upper").value_or(0.0) >= kManyTurns;
+  }
+
+  /// Makes numbers of the lower and the upper end, in this order.
+  void CleanRange(const std::string& name, XMLElement* limit) {
+    const int line = limit->GetLineNum();
+    for (const char* key : {"lower", "upper"}) {
+      const char* text = limit->Attribute(key);
+      const int side = text == nullptr ? 0 : SideWithoutEnd(text);
+      if (side == 0) continue;
+      endless_.Add(line, name, fmt::format("{} is '{}'", key, text));
+      limit->SetAttribute(key, side > 0 ? kNoEnd : kNoEndBelow);
+    }
+    for (const char* key : {"lower", "upper"}) {
+      if (IsNumberOrLeftOut(*limit, key)) continue;
+      wordy_.Add(line, name, fmt::format("{} is '{}'", key, limit->Attribute(key)));
+      limit->DeleteAttribute("lower");  // both are 0 then
+      limit->DeleteAttribute("upper");
+    }
+    if (!IsSwapped(*limit)) return;
+    const double lower = NumberIn(limit, "lower").value_or(0.0);
+    const double upper = NumberIn(limit, "upper").value_or(0.0);
+    swapped_.Add(line, name, fmt::format("lower is {} and upper {}", lower, upper));
+    limit->SetAttribute("lower", fmt::format("{}", upper).c_str());
+    limit->SetAttribute("upper", fmt::format("{}", lower).c_str());
+  }
+
+  /// 1 for "inf", -1 for "-inf", 0 for all else, in any spelling that a number may have.
+  static int SideWithoutEnd(const std::string& text) {
+    std::istringstream in(base::ToLower(text));
+    std::string word, more;
+    in >> word;
+    if (in >> more) return 0;
+    const bool is_below = !word.empty() && word[0] == '-';
+    if (!word.empty() && (word[0] == '-' || word[0] == '+')) word.erase(0, 1);
+    if (word != "inf" && word != "infinity" && word != ".inf") return 0;
+    return is_below ? -1 : 1;
   }
 
   void Tell() const {
@@ -403,6 +434,14 @@ class UrdfCleaner {
     loose_.Tell(where_, "taken_as_fixed", "the base moves by itself, such joints do not");
     unlimited_.Tell(where_, "held_at_0",
                     "a joint that turns or slides needs a <limit>, which these have not");
+    wordy_.Tell(where_, "unreadable_limits",
+                "a limit that is no number says nothing, so that such a joint is held at 0");
+    swapped_.Tell(where_, "limits_swapped", "a lower limit above the upper one changes with it");
+    endless_.Tell(where_, "without_end", "a joint without end may go to 1e16");
+    unusable_.Tell(
+        where_, "unusable_limits",
+        "efforts and velocities that are no numbers of at least 0 are taken as not said");
+    axisless_.Tell(where_, "without_axis", "a joint whose axis is no direction does not move");
   }
 
   std::string where_;
@@ -412,6 +451,7 @@ class UrdfCleaner {
   XMLElement* robot_{nullptr};
   CleanUrdf clean_;
   Told inertials_, shapeless_, sizeless_, loose_, unlimited_;
+  Told wordy_, swapped_, endless_, unusable_, axisless_;
 };
 
 }  // namespace

@@ -23,8 +23,10 @@ bool IsKept(const std::string& parent, const std::string& child);
 /// Leaves out what no question here needs and the parser would refuse a robot for: looks,
 /// transmissions, plugins, sensors, calibration, masses and inertias that no body can have,
 /// collisions without a shape or with a point or a line for one. Joints that float or move in a
-/// plane are fixed, as the base moves by itself; those without limits that need some are held at 0,
-/// and efforts and velocities that are not said are 0. A capsule
+/// plane are fixed, as the base moves by itself, and so are those whose axis is no direction; those
+/// without limits that need some, or with words for them, are held at 0; limits in the wrong order
+/// are swapped, infinite ones are 1e16, and what may turn by 1000 rad to both sides is continuous;
+/// efforts and velocities that are not said, or are no numbers of at least 0, are 0. A capsule
 /// (`<capsule radius length>`, the length that of its straight part) becomes a cylinder and two
 /// spheres. Logs a warning for each kind of what is wrong, with all names, lines and number.
 /// What is wrong (numbers that are none, unknown shapes and kinds of joints) goes to `problems`,

@@ -126,6 +126,12 @@ std::string TransformBuffer::WhyNot(const std::string& parent, const std::string
                      LineOf(child), LineOf(parent));
 }
 
+std::vector<std::string> TransformBuffer::Names() const {
+  std::vector<std::string> names;
+  buffer_._getFrameStrings(names);
+  return names;
+}
+
 bool TransformBuffer::IsKnown(const std::string& frame) const {
   return !frame.empty() && buffer_._frameExists(frame);
 }

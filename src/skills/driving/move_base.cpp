@@ -56,12 +56,18 @@ std::optional<navigation::CarFollower> MakeFollower(const DrivingContext& contex
 }
 
 /// What a robot is checked against: what is higher than it drives over, but no more than the floor
-/// step of collision checks above its lowest shape, for it touches what is higher than that.
+/// step of collision checks above its lowest shape, for it touches what is higher than that. A
+/// robot without shapes is its footprint, up to where footprints are made of shapes; a plate may
+/// end below that step.
 Band ObstacleHeights(const robot::Robot& robot, const MoveBaseParams& params) {
+  if (!robot::HasShapes(robot.model)) {
+    return {params.min_obstacle_height, std::max(params.min_obstacle_height, robot::kFootprintTop)};
+  }
   geometry::Aabb all;
   for (const geometry::Aabb& link : robot::LinkBounds(robot)) all.Include(link);
   const double touched = std::min(0.0, all.lower.z()) + world::kFloorStep;
-  return {std::min(params.min_obstacle_height, std::max(touched, all.lower.z())), all.upper.z()};
+  const double lower = std::min(params.min_obstacle_height, std::max(touched, all.lower.z()));
+  return {lower, std::max(lower, all.upper.z())};
 }
 
 /// In whole steps: arms in no known posture, measured and never quite the same, give the same
@@ -204,7 +210,8 @@ DrivingContext MakeDrivingContext(const world::World& world, const robot::Robot&
 geometry::Polygon FootprintOf(const DrivingContext& context,
                               const robot::JointPositions& measured) {
   const robot::Robot& robot = *context.robot;
-  if (!robot.profile.upper_body || measured.empty()) return context.footprint;
+  if (!robot.profile.upper_body || measured.empty() || !robot::HasShapes(robot.model))
+    return context.footprint;
   const geometry::Polygon outline =
       robot::OutlineOf(robot.model, robot.profile.base_link, DrivingJoints(robot, measured));
   std::vector<Eigen::Vector2d> corners = context.footprint;

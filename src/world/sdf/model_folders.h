@@ -5,21 +5,6 @@
 
 namespace hires::world {
 
-/// Without an exception where the path cannot be looked at.
-bool Exists(const std::string& path);
-bool IsFolder(const std::string& path);
-
-/// Where model:// and https:// names are looked for, for a world or object file: models/ and the
-/// folder beside it, models/ beside the folders above it up to its package (worlds/ and models/
-/// side by side), `model_path`, what the environment names in GZ_SIM_RESOURCE_PATH,
-/// IGN_GAZEBO_RESOURCE_PATH, SDF_PATH, GAZEBO_MODEL_PATH and GAZEBO_RESOURCE_PATH, Gazebo's caches
-/// (~/.gz/fuel, ~/.ignition/fuel, ~/.gazebo/models), and our own ground plane and sun.
-std::vector<std::string> ModelFoldersFor(const std::string& file,
-                                         const std::vector<std::string>& model_path);
-
-/// The variables of ModelFoldersFor, for messages.
-std::string ModelVariables();
-
 /// A name as Fuel's servers and caches compare them: case, blanks, "%20" and "_" are alike.
 std::string AlikeName(const std::string& name);
 

@@ -28,6 +28,7 @@ class TransformBuffer : public hires::sensing::FrameTree {
                                  double time) const override;
   std::optional<double> NewestOf(const std::string& parent,
                                  const std::string& child) const override;
+  std::vector<std::string> Names() const override;
   void ForgetMoving() override;
 
   /// For people: why Find does not find the one in the other, with all that is known above both;

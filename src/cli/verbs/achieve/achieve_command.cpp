@@ -122,12 +122,15 @@ std::string Plural(std::size_t count, const std::string& what) {
   return fmt::format("{} {}{}", count, what, count == 1 ? "" : "s");
 }
 
-void PrintReport(const loop::AchieveReport& report, bool is_virtual) {
+/// @param is_dry_run  as it was asked for here; what its robot could not do has failed.
+void PrintReport(const loop::AchieveReport& report, bool is_virtual, bool is_dry_run) {
   const reports::Timeline timeline = reports::MakeTimeline(report);
   if (!timeline.bars.empty()) std::cout << '\n' << reports::TimelineText(timeline);
   const std::string table = reports::ImaginationTable(report, is_virtual);
   if (!table.empty()) std::cout << '\n' << table;
-  if (report.outcome == loop::AchieveOutcome::kDryRun)
+  const bool cannot_do =
+      is_dry_run && report.outcome == loop::AchieveOutcome::kFailed && !report.status.steps.empty();
+  if (cannot_do || report.outcome == loop::AchieveOutcome::kDryRun)
     std::cout << '\n' << DryRunTable(report.status);
   const std::size_t num_imaginations = report.status.imaginations.size();
   std::cout << fmt::format("\n{}: {}{}\n", report.task, ToString(report.outcome),
@@ -241,7 +244,8 @@ void AddAchieveVerb(CLI::App* app, AchieveOptions* options) {
   CLI::App* verb = app->add_subcommand(
       "achieve",
       "have the running robot do a task. Exit codes: 0 done (or planned and imagined, where the "
-      "execution monitor has ~dry_run), 1 failed or refused, 2 no plan, 3 preempted");
+      "execution monitor has ~dry_run; 1 where a step makes no sense), 1 failed or refused, 2 no "
+      "plan, 3 preempted");
   verb->add_option(
       "task", options->task,
       "'serve_coffee_to_guest guest1', or a SHOP2 task network; with --local it may be "
@@ -316,7 +320,7 @@ int RunAchieveVerb(const AchieveOptions& options, const std::string& package_fol
             : achieve({base::Join(options.task, " "), options.imagination, options.wait}, show,
                       cancelled);
   show(report.status);  // its changes may have come with the result alone
-  PrintReport(report, options.is_local);
+  PrintReport(report, options.is_local, options.is_dry_run);
   if (local) PrintTruth(*local, base::SteadyNow() - begun);
   WriteFiles(options, origin, report, local);
   return ExitCodeFor(report.outcome);

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "hires/base/averages.h"
+#include "base/averages.h"
 #include "hires/base/text.h"
 
 namespace hires::cli {

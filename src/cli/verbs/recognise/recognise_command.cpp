@@ -8,10 +8,10 @@
 #include <nlohmann/json.hpp>
 #include <utility>
 
+#include "base/averages.h"
 #include "cli/exit_code.h"
 #include "cli/outputs.h"
 #include "cli/report_output.h"
-#include "hires/base/averages.h"
 #include "hires/base/error.h"
 #include "hires/base/text.h"
 #include "hires/perception/pcd_file.h"
@@ -168,7 +168,8 @@ void CheckHasPoints(const perception::PointCloud& cloud, const std::string& path
 
 /// No depth camera measures as far; a cloud in millimetres says so by that.
 void CheckUnit(const perception::PointCloud& cloud, const std::string& path) {
-  constexpr float kFarthest = 100.0F;  // [m]
+  constexpr float kFarthest = 20.0F;      // [m] in the median; tables stand nearer
+  constexpr float kCentimetres = 300.0F;  // up to 3 m, else 0.3 m and more in millimetres
   std::vector<float> depths;
   for (const Eigen::Vector3f& p_C : cloud.points) {
     if (perception::IsMeasured(p_C)) depths.push_back(p_C.z());
@@ -176,9 +177,11 @@ void CheckUnit(const perception::PointCloud& cloud, const std::string& path) {
   if (depths.empty()) return;
   const float middle = base::Median(depths);
   if (middle <= kFarthest) return;
+  const bool is_centimetres = middle < kCentimetres;
   throw base::ConfigError(fmt::format(
-      "{}: half of its points are farther than {:.0f} away; wanted metres: are these millimetres?",
-      path, middle));
+      "{}: half of its points are farther than {:.0f} away; wanted metres: are these {}? Divide "
+      "them by {}",
+      path, middle, is_centimetres ? "centimetres" : "millimetres", is_centimetres ? 100 : 1000));
 }
 
 }  // namespace
@@ -209,7 +212,12 @@ int RunRecogniseVerb(const RecogniseOptions& options, const std::string& package
   perception::PointCloud cloud = perception::ReadPcd(options.cloud);
   CheckHasPoints(cloud, options.cloud);
   const std::string why = perception::TakeOnlyAhead(&cloud);
-  if (!why.empty()) throw base::ConfigError(options.cloud + ": " + why);
+  if (!why.empty()) {
+    throw base::ConfigError(fmt::format(
+        "{}: {}: transform its points; from the camera's place, with x forward, y left and z up, "
+        "they are (-y, -z, x). A VIEWPOINT in the file is not applied",
+        options.cloud, why));
+  }
   CheckUnit(cloud, options.cloud);
   const perception::Recogniser recogniser(config.catalogue, config.params);
   const Recognition seen = recogniser.Recognise(cloud, std::nullopt, base::Rng(kSeed));
