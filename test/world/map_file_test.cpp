@@ -1,3 +1,4 @@
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -112,12 +113,27 @@ TEST_F(MapFileTest, SavedMapsReadBackTheSame) {
   }
 }
 
+TEST_F(MapFileTest, AYawOfMoreThanAFullTurnIsNoneInRadians) {
+  for (const char* degrees : {"90.0", "-90.0", "180", "-45", "10", "7", "6.29", "360"}) {
+    EXPECT_THAT(ErrorWith("2.0, 0.0]", fmt::format("2.0, {}]", degrees)),
+                AllOf(HasSubstr("m.yaml:3: origin"), HasSubstr("more than a full turn"),
+                      HasSubstr("wanted radians")))
+        << degrees;
+  }
+  for (const char* radians : {"1.5708", "-3.14159", "6.28", "6.2832", "-6.2831853"}) {
+    const test_support::LogCatcher log(base::LogLevel::kWarn);  // of a turned map
+    std::string yaml = kYaml;
+    yaml.replace(yaml.find("2.0, 0.0]"), 9, fmt::format("2.0, {}]", radians));
+    EXPECT_NO_THROW(Load(yaml)) << radians;
+  }
+}
+
 TEST_F(MapFileTest, RefusesYamlThatIsWrong) {
   EXPECT_THAT(ErrorWith("origin: [1.0, 2.0, 0.0]\n", ""),
               AllOf(HasSubstr("m.yaml: origin is missing"), HasSubstr("origin: [0.0, 0.0, 0.0]")));
   EXPECT_THAT(ErrorWith("2.0, 0.0]", "2.0]"),
               AllOf(HasSubstr("m.yaml:3: origin"), HasSubstr("yaw")));
-  EXPECT_THAT(ErrorWith("2.0, 0.0]", "2.0, 180]"), HasSubstr("wanted radians: 3.14159"));
+  EXPECT_THAT(ErrorWith("2.0, 0.0]", "2.0, 180]"), HasSubstr("of degrees, that is 3.14159"));
   EXPECT_THAT(ErrorWith("occupied_thresh: 0.65", "occupied_thresh: 65"), HasSubstr("it is 0.65"));
   EXPECT_THAT(ErrorWith("[1.0,", "[1e9,"), HasSubstr("origin"));
   EXPECT_THAT(ErrorWith("[1.0,", "[.nan,"), HasSubstr("origin"));

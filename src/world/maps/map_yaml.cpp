@@ -20,6 +20,7 @@ namespace {
 
 constexpr double kMaxOrigin = 1e5;  // [m]
 constexpr double kNoYaw = 1e-6;     // [rad] what tools write for 0
+constexpr double kMaxYaw = 6.2832;  // [rad] a full turn, as it is rounded
 constexpr std::size_t kMostNamed = 12;
 
 const std::vector<std::string>& KnownKeys() {
@@ -187,9 +188,10 @@ class MapYamlReader {
                                                 "within {:g} m",
                                                 numbers[0], numbers[1], numbers[2], kMaxOrigin));
     }
-    if (std::abs(numbers[2]) > 100.0) {
+    if (std::abs(numbers[2]) > kMaxYaw) {
       return Fail(LineOf("origin"),
-                  fmt::format("origin: its third number, the yaw, is {:g}, wanted radians: {:g}",
+                  fmt::format("origin: its third number, the yaw, is {:g}, more than a full turn, "
+                              "wanted radians; of degrees, that is {:g}",
                               numbers[2], numbers[2] * EIGEN_PI / 180.0));
     }
     params->origin = {numbers[0], numbers[1]};
