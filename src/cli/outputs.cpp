@@ -5,9 +5,12 @@
 #include <filesystem>
 #include <system_error>
 
+#include "cli/verbs/imagine/imagine_start.h"
 #include "hires/base/error.h"
 #include "hires/base/files/own_input.h"
 #include "hires/base/text.h"
+#include "hires/robot/load_robot.h"
+#include "hires/world/occupancy_grid.h"
 #include "reports/text/report_json.h"
 
 namespace hires::cli {
@@ -16,7 +19,7 @@ namespace {
 void CheckOutput(const VerbFile& output, const std::vector<VerbFile>& inputs) {
   if (output.path == "-") {
     throw base::ConfigError(
-        fmt::format("{} -: is not printed; wanted a file, or /dev/stdout", output.what));
+        fmt::format("{} -: is no file; name one, or /dev/stdout to print it", output.what));
   }
   reports::RequireFolderOf(output.path);
   base::RequireReplaceable(output.path);
@@ -29,10 +32,23 @@ bool AreSame(const std::string& a, const std::string& b) {
   namespace fs = std::filesystem;
   std::error_code none_there;
   if (fs::exists(a, none_there) && !fs::is_regular_file(a, none_there)) return false;
-  return fs::absolute(a).lexically_normal() == fs::absolute(b).lexically_normal();
+  return fs::equivalent(a, b, none_there) ||
+         fs::weakly_canonical(a, none_there) == fs::weakly_canonical(b, none_there);
 }
 
 }  // namespace
+
+VerbFile PictureFile(const std::string& map) {
+  return {"picture of the map", map.empty() ? "" : world::PictureOfMap(map)};
+}
+
+std::vector<VerbFile> SceneFiles(const std::string& world, const std::string& map,
+                                 const std::string& robot, const std::vector<std::string>& areas) {
+  std::vector<VerbFile> files{
+      {"world", world}, {"map", map}, PictureFile(map), {"robot", robot::FileOfRobot(robot)}};
+  for (const std::string& file : AreaFilesOf(areas)) files.push_back({"areas", file});
+  return files;
+}
 
 void CheckOutputs(const std::vector<VerbFile>& outputs, const std::vector<VerbFile>& inputs) {
   std::vector<std::string> wrong;

@@ -14,7 +14,6 @@
 #include <nlohmann/json.hpp>
 
 #include "hires/base/error.h"
-#include "hires/base/files/own_input.h"
 #include "hires/base/hash.h"
 #include "hires/base/text.h"
 #include "reports/text/report_json.h"
@@ -112,17 +111,6 @@ ordered_json HeadJson(const ReportOptions& options, const ReportOrigin& origin) 
           {"hashes", origin.hashes}};
 }
 
-/// Hours of work must not end at a file that cannot be written.
-void RequireWritable(const std::string& option, const std::string& path) {
-  if (path.empty()) return;
-  if (path == "-") {
-    throw base::ConfigError(
-        fmt::format("{} -: is no file; name one, or /dev/stdout to print it", option));
-  }
-  reports::RequireFolderOf(path);
-  base::RequireReplaceable(path);
-}
-
 /// What is wanted of the JSON file, of standard input where it is "-".
 void MakePictures(const std::string& file, const std::string& html, const std::string& png,
                   const std::string& package_folder, const std::string& input = "") {
@@ -152,20 +140,14 @@ void AddReportOptions(CLI::App* verb, ReportOptions* options) {
                    "write one page to this file that shows everything and needs no network");
 }
 
-void CheckReport(const ReportOptions& options) {
-  RequireWritable("--json", options.json);
-  RequireWritable("--html", options.html);
-  RequireWritable("--png", options.png);
+void CheckReport(const ReportOptions& options, const std::vector<VerbFile>& inputs,
+                 std::vector<VerbFile> more_outputs) {
+  more_outputs.push_back({"--json", options.json});
+  more_outputs.push_back({"--html", options.html});
+  more_outputs.push_back({"--png", options.png});
+  CheckOutputs(more_outputs, inputs);
   if (!(options.html + options.png).empty()) {
     RunReportProgram(options.package_folder, {"--check"});
-  }
-}
-
-void RefuseInputs(const ReportOptions& options, const std::vector<ReportInput>& inputs) {
-  for (const ReportInput& input : inputs) {
-    base::RefuseOwnInput("--json", options.json, input.what, input.path);
-    base::RefuseOwnInput("--html", options.html, input.what, input.path);
-    base::RefuseOwnInput("--png", options.png, input.what, input.path);
   }
 }
 
@@ -221,10 +203,7 @@ int RunReportVerb(const StoredReportOptions& options, const std::string& package
   if ((options.html + options.png).empty()) {
     throw base::ConfigError("report: nothing to make; add --html FILE or --png FILE");
   }
-  base::RefuseOwnInput("--html", options.html, "answer", options.file);
-  base::RefuseOwnInput("--png", options.png, "answer", options.file);
-  RequireWritable("--html", options.html);
-  RequireWritable("--png", options.png);
+  CheckOutputs({{"--html", options.html}, {"--png", options.png}}, {{"answer", options.file}});
   MakePictures(options.file, options.html, options.png, package_folder);
   SaySaved({options.html, options.png});
   return 0;

@@ -5,6 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "cli/outputs.h"
+
 namespace CLI {
 class App;
 }
@@ -29,9 +31,13 @@ bool IsWanted(const ReportOptions& options);
 /// Adds --json and --html to a verb.  @pre `options` outlives `verb`.
 void AddReportOptions(CLI::App* verb, ReportOptions* options);
 
-/// Before the work is done: an hour of it must not end at a folder or package that is missing.
-/// @throws base::ConfigError naming what is not there.
-void CheckReport(const ReportOptions& options);
+/// Before the work is done: an hour of it must not end at a folder or package that is missing, nor
+/// at an answer that is written over what it rests on.
+/// @param inputs        that the verb reads.
+/// @param more_outputs  that it writes beside the report.
+/// @throws base::ConfigError as CheckOutputs() of them all, or naming what is not there.
+void CheckReport(const ReportOptions& options, const std::vector<VerbFile>& inputs = {},
+                 std::vector<VerbFile> more_outputs = {});
 
 /// A file that an answer will rest on, as it is before the work is done.
 struct ReportInput {
@@ -41,10 +47,6 @@ struct ReportInput {
   std::string path;
   std::string hash;  ///< 16 digits
 };
-
-/// Before the work is done: an answer is not written over what it rests on.
-/// @throws base::ConfigError naming option and file.
-void RefuseInputs(const ReportOptions& options, const std::vector<ReportInput>& inputs);
 
 /// How an answer came about, for whoever wants it again.
 struct ReportOrigin {

@@ -345,7 +345,7 @@ TEST_F(LocaliseCommandTest, WhatIsReadIsNotWrittenOver) {
   EXPECT_EQ(base::ReadTextFile(log), before);
   EXPECT_THAT(run(both, both).err,
               HasSubstr("--trajectory and --json: both " + both + "; name two files"));
-  EXPECT_THAT(run("-", "-").err, HasSubstr("--trajectory -: is not printed"));
+  EXPECT_THAT(run("-", "-").err, HasSubstr("--trajectory -: is no file"));
   EXPECT_NE(run("/dev/null", "/dev/null").code, kExitBadInput) << "a device takes several";
 }
 

@@ -197,7 +197,7 @@ TEST_F(RecogniseCommandTest, BadInputIsRefused) {
   refused({cloud, "--json", Path("none/seen.json")}, "none");
   refused({cloud, "--labels", Path("none/out.pcd")}, "none");
   refused({cloud, "--labels", folder_.path().string()}, "it is a folder");
-  refused({cloud, "--labels", "-"}, "wanted a file");
+  refused({cloud, "--labels", "-"}, "is no file");
   refused({cloud, "--labels", cloud}, "would write over the cloud");
   refused({cloud, "--json", cloud}, "would write over the cloud");
   refused({cloud, "--json", Path("a"), "--labels", Path("a")}, "name two files");

@@ -55,10 +55,10 @@ TEST(CommandTextTest, AShellReadsTheSameWords) {
 TEST_F(ReportOutputTest, NoAnswerIsWrittenOverWhatItRestsOn) {
   const std::string own = folder_.Write("own.yaml", "a: 1\n");
   ReportOptions options = Options();
-  EXPECT_NO_THROW(RefuseInputs(options, {{"settings", own}, {"world", ""}}));
+  EXPECT_NO_THROW(CheckReport(options, {{"settings", own}, {"world", ""}}));
   options.html = Path("./own.yaml");
   EXPECT_EQ(ConfigErrorOf([&] {
-              RefuseInputs(options, {{"settings", own}});
+              CheckReport(options, {{"settings", own}});
             }),
             "--html " + options.html + ": would write over the settings; name another file");
   const std::string answer = folder_.Write("answer.json", "{}");

@@ -113,6 +113,19 @@ TEST_F(MapFileTest, SavedMapsReadBackTheSame) {
   }
 }
 
+TEST_F(MapFileTest, ThePictureIsNamedWhereLoadingFindsIt) {
+  const std::string yaml = folder_.Write("m.yaml", kYaml);
+  EXPECT_EQ(PictureOfMap(yaml), folder_.path("m.pgm"));
+  EXPECT_EQ(PictureToSave(yaml), folder_.path("m.pgm"));
+  std::string elsewhere = kYaml;
+  elsewhere.replace(elsewhere.find("m.pgm"), 5, "/none/m.pgm");
+  EXPECT_EQ(PictureOfMap(folder_.Write("e.yaml", elsewhere)), folder_.path("m.pgm"));
+  for (const char* none : {"image: gone.pgm\n", "a: [\n", "resolution: 0.1\n"}) {
+    EXPECT_EQ(PictureOfMap(folder_.Write("none.yaml", none)), "") << none;
+  }
+  EXPECT_EQ(PictureOfMap(folder_.path("nowhere.yaml")), "");
+}
+
 TEST_F(MapFileTest, AYawOfMoreThanAFullTurnIsNoneInRadians) {
   for (const char* degrees : {"90.0", "-90.0", "180", "-45", "10", "7", "6.29", "360"}) {
     EXPECT_THAT(ErrorWith("2.0, 0.0]", fmt::format("2.0, {}]", degrees)),

@@ -70,7 +70,15 @@ std::optional<OccupancyGrid> FloorHoles(const World& world, double depth, double
 /// @throws base::ConfigError with all that is wrong, each with its line where it has one (a missing
 /// origin included, as map_server does).
 OccupancyGrid LoadMap(const std::string& yaml_path);
+
+/// The picture that LoadMap() reads; empty where it finds none.
+std::string PictureOfMap(const std::string& yaml_path);
+
+/// Writes a YAML and its picture, PictureToSave().
 void SaveMap(const OccupancyGrid& grid, const std::string& yaml_path);
+
+/// Beside the YAML, with .pgm for its ending.
+std::string PictureToSave(const std::string& yaml_path);
 
 /// A world whose walls are the grid's occupied cells extruded to `height` [m] (runs of cells of a
 /// row merged into boxes, equal runs of rows merged as well).

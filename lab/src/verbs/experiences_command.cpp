@@ -10,9 +10,9 @@
 #include <utility>
 
 #include "hires/base/error.h"
-#include "hires/base/files/own_input.h"
 #include "hires/base/text.h"
 #include "cli/exit_code.h"
+#include "cli/outputs.h"
 #include "cli/whole_number.h"
 #include "lab/src/experience/experience_report.h"
 #include "reports/text/report_json.h"
@@ -101,7 +101,6 @@ void CheckNames(const ExperienceStore& store, const ExperiencesOptions& options)
 
 int Export(const ExperiencesOptions& options) {
   const ExperienceStore store(options.store, ExperienceStore::Mode::kRead);
-  reports::RequireFolderOf(options.csv);
   std::string text;
   std::size_t lines = 0;
   store.ForEach(QueryOf(options), [&](const ExperienceStore::Stored& stored) {
@@ -149,10 +148,9 @@ void AddExperiencesVerb(CLI::App* app, ExperiencesOptions* o) {
 }
 
 int RunExperiencesVerb(const ExperiencesOptions& options) {
-  base::RefuseOwnInput("--csv", options.csv, "store", options.store);
-  base::RefuseOwnInput("--json", options.json, "store", options.store);
+  cli::CheckOutputs({{"--csv", options.csv}, {"--json", options.json}},
+                    {{"store", options.store}});
   if (*options.export_verb) return Export(options);
-  if (!options.json.empty()) reports::RequireFolderOf(options.json);
   const ExperienceStore store(options.store, ExperienceStore::Mode::kRead);
   std::string text;
   const nlohmann::ordered_json json = *options.stats_verb

@@ -6,7 +6,6 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <filesystem>
-#include <fstream>
 #include <iostream>
 #include <nlohmann/json.hpp>
 #include <thread>
@@ -15,26 +14,16 @@
 #include "hires/base/files/named_file.h"
 #include "hires/base/text.h"
 #include "cli/exit_code.h"
+#include "cli/outputs.h"
 #include "cli/crew_display.h"
 #include "cli/whole_number.h"
 #include "reports/text/configuration_hash.h"
 #include "lab/src/experiment/experiment.h"
-#include "reports/text/report_json.h"
 #include "reports/task/timeline.h"
 #include "hires/knowledge/experience.h"
 
 namespace hires::lab {
 namespace {
-
-[[noreturn]] void FailToWrite(const std::string& path) {
-  throw base::ConfigError(
-      fmt::format("{}: cannot be written; check that its folder exists and may be written", path));
-}
-
-/// An hour of work must not end at a folder that is missing.
-void CheckWritable(const std::string& path) {
-  if (!path.empty() && !std::ofstream(path, std::ios::app)) FailToWrite(path);
-}
 
 ExperimentOverrides OverridesOf(const ExperimentOptions& options) {
   ExperimentOverrides overrides;
@@ -150,9 +139,10 @@ int RunExperimentVerb(const ExperimentOptions& options, const std::function<bool
     std::cout << HeadText(UnplayedReport(config));
     return cli::kExitRecommended;
   }
-  CheckWritable(options.csv);
-  if (!options.junit.empty()) reports::RequireFolderOf(options.junit);
-  cli::CheckReport(options.report);
+  cli::CheckReport(
+      options.report,
+      {{"experiment", file}, {"map", options.map}, cli::PictureFile(options.map)},
+      {{"--csv", options.csv}, {"--junit", options.junit}, {"--experiences", options.experiences}});
   const cli::ReportOrigin origin = OriginOf(options, file, config);
   const base::Crew crew = cli::MakeCrew(options.threads, options.quiet, cancelled);
   std::optional<knowledge::ExperienceStore> experiences = ExperiencesOf(options, config);

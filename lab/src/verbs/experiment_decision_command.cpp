@@ -15,6 +15,7 @@
 #include "hires/base/process.h"
 #include "hires/base/text.h"
 #include "cli/exit_code.h"
+#include "cli/outputs.h"
 #include "cli/crew_display.h"
 #include "cli/whole_number.h"
 #include "reports/text/configuration_hash.h"
@@ -176,9 +177,7 @@ void AddDecisionVerb(CLI::App* experiment, DecisionOptions* options) {
 
 int RunDecisionVerb(const DecisionOptions& options, const std::string& package_folder,
                     const std::function<bool()>& cancelled) {
-  for (const std::string& path : {JournalPath(options), options.json}) {
-    if (!path.empty()) reports::RequireFolderOf(path);
-  }
+  cli::CheckOutputs({{"--resume", JournalPath(options)}, {"--json", options.json}}, {});
   const DecisionStage stage(options, package_folder);
   const DecisionParts parts = PartsOf(stage, cancelled);
   const DecisionNeeds needs = NeedsOf(stage);

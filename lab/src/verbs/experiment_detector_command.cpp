@@ -11,6 +11,7 @@
 #include "hires/base/hash.h"
 #include "hires/base/text.h"
 #include "cli/exit_code.h"
+#include "cli/outputs.h"
 #include "cli/crew_display.h"
 #include "cli/report_output.h"
 #include "cli/whole_number.h"
@@ -55,8 +56,8 @@ void AddDetectorFitVerb(CLI::App* experiment, DetectorFitOptions* o) {
 
 int RunDetectorFitVerb(const DetectorFitOptions& options, const std::string& package_folder,
                        const std::function<bool()>& cancelled) {
-  for (const std::string& file : {options.output, options.json})
-    if (!file.empty()) reports::RequireFolderOf(file);
+  cli::CheckOutputs({{"--output", options.output}, {"--json", options.json}},
+                    {{"objects", options.objects}, {"configuration", options.config}});
   DetectorFitOrder order;
   order.tables = options.tables;
   order.held_out = options.held_out;

@@ -16,11 +16,11 @@
 #include "base/parallel.h"
 #include "hires/base/text.h"
 #include "cli/exit_code.h"
+#include "cli/outputs.h"
 #include "cli/crew_display.h"
 #include "cli/whole_number.h"
 #include "reports/text/configuration_hash.h"
 #include "lab/src/experiment/hypothesis_journal.h"
-#include "reports/text/report_json.h"
 #include "reports/task/timeline.h"
 
 namespace hires::lab {
@@ -36,10 +36,8 @@ std::string JournalPath(const HypothesisOptions& options) {
 }
 
 void RequireFolders(const HypothesisOptions& options) {
-  for (const std::string& path : {JournalPath(options), options.csv}) {
-    if (!path.empty()) reports::RequireFolderOf(path);
-  }
-  cli::CheckReport(options.report);
+  cli::CheckReport(options.report, {},
+                   {{"--resume", JournalPath(options)}, {"--csv", options.csv}});
   if (options.logs.empty()) return;
   std::error_code error;
   fs::create_directories(options.logs, error);

@@ -8,6 +8,7 @@
 
 #include "lab/src/verbs/experiment_command.h"
 #include "cli/exit_code.h"
+#include "cli/outputs.h"
 #include "cli/crew_display.h"
 #include "cli/whole_number.h"
 #include "lab/src/ladder/ladder.h"
@@ -54,7 +55,7 @@ void AddLadderVerb(CLI::App* experiment, LadderOptions* o) {
 
 int RunLadderVerb(const LadderOptions& options, const std::string& package_folder,
                   const std::function<bool()>& cancelled) {
-  if (!options.json.empty()) reports::RequireFolderOf(options.json);
+  cli::CheckOutputs({{"--json", options.json}}, {});
   const loop::LoopSetup loop(package_folder + "/config/loop.yaml");
   LadderOrder order;
   order.package_folder = package_folder;

@@ -7,6 +7,7 @@
 #include "lab/src/verbs/experiment_command.h"
 #include "hires/base/text.h"
 #include "cli/exit_code.h"
+#include "cli/outputs.h"
 #include "cli/crew_display.h"
 #include "cli/whole_number.h"
 #include "reports/text/configuration_hash.h"
@@ -38,8 +39,8 @@ void AddPoseErrorVerb(CLI::App* experiment, PoseErrorOptions* o) {
 
 int RunPoseErrorVerb(const PoseErrorOptions& options, const std::string& package_folder,
                      const std::function<bool()>& cancelled) {
-  for (const std::string& file : {options.output, options.json})
-    if (!file.empty()) reports::RequireFolderOf(file);
+  cli::CheckOutputs({{"--output", options.output}, {"--json", options.json}},
+                    {{"drives", options.drives}});
   ExperimentOverrides overrides;
   overrides.seed = options.seed;
   PoseErrorOrder order;

@@ -8,6 +8,7 @@
 
 #include "lab/src/verbs/experiment_command.h"
 #include "cli/exit_code.h"
+#include "cli/outputs.h"
 #include "cli/crew_display.h"
 #include "cli/report_output.h"
 #include "cli/whole_number.h"
@@ -49,7 +50,8 @@ void AddRecognitionVerb(CLI::App* experiment, RecognitionOptions* o) {
 
 int RunRecognitionVerb(const RecognitionOptions& options, const std::string& package_folder,
                        const std::function<bool()>& cancelled) {
-  if (!options.json.empty()) reports::RequireFolderOf(options.json);
+  cli::CheckOutputs({{"--json", options.json}},
+                    {{"objects", options.objects}, {"configuration", options.config}});
   if (!options.clouds.empty()) reports::RequireFolder("--clouds", options.clouds);
   RecognitionOrder order;
   order.tables = options.tables;

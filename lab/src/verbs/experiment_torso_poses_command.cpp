@@ -6,6 +6,7 @@
 
 #include "lab/src/verbs/experiment_command.h"
 #include "cli/exit_code.h"
+#include "cli/outputs.h"
 #include "cli/crew_display.h"
 #include "cli/whole_number.h"
 #include "reports/text/configuration_hash.h"
@@ -33,7 +34,7 @@ void AddTorsoPosesVerb(CLI::App* experiment, TorsoPosesOptions* o) {
 
 int RunTorsoPosesVerb(const TorsoPosesOptions& options, const std::string& package_folder,
                       const std::function<bool()>& cancelled) {
-  if (!options.json.empty()) reports::RequireFolderOf(options.json);
+  cli::CheckOutputs({{"--json", options.json}}, {{"configuration", options.config}});
   const auto scene = imagination::ReadSetupConfig(package_folder + "/config/scene.yaml");
   TorsoPosesOrder order;
   order.recogniser = perception::ReadRecogniserConfig(

@@ -11,9 +11,9 @@
 #include "hires/base/spelling.h"
 #include "hires/base/text.h"
 #include "cli/exit_code.h"
+#include "cli/outputs.h"
 #include "cli/list_rows.h"
 #include "lab/src/experiment/experiment.h"
-#include "reports/text/report_json.h"
 #include "lab/src/series/scenario_series.h"
 
 namespace hires::lab {
@@ -86,7 +86,7 @@ int RunLabListVerb(const LabListOptions& options, const std::string& package_fol
   if (lister == Listers().end()) {
     throw base::ConfigError(base::UnknownName("list", options.what, Kinds()));
   }
-  if (!options.json.empty() && options.json != "-") reports::RequireFolderOf(options.json);
+  cli::CheckOutputs({{"--json", options.json, true}}, {});
   cli::PrintList(options.what, lister->second(package_folder), options.json);
   return cli::kExitRecommended;
 }

@@ -113,11 +113,10 @@ int RunReproduceVerb(const ReproduceOptions& options, const std::string& package
   PlayStore store({results, package_folder, HashOfFile(order.lab_program)});
   if (options.is_list) return List(items, order.plays, &store);
   const base::WriterLock lock(results + "/results", "name another folder with --results");
-  cli::CheckReport(options.report);
+  cli::CheckReport(options.report, {{"catalogue", path}});
   cli::ReportOrigin origin;
   origin.verb = "reproduce";
   if (cli::IsWanted(options.report)) origin.inputs = {{"catalogue", path}};
-  cli::RefuseInputs(options.report, origin.inputs);
   order.package = package_folder;
   order.again = options.again;
   order.cancelled = cancelled;

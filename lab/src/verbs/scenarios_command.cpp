@@ -20,7 +20,6 @@
 #include "cli/exit_code.h"
 #include "cli/crew_display.h"
 #include "cli/whole_number.h"
-#include "reports/text/report_json.h"
 #include "lab/src/series/series_report.h"
 #include "hires/knowledge/blackboard_config.h"
 #include "hires/knowledge/store.h"
@@ -165,8 +164,7 @@ class Runner {
 };
 
 void CheckOutputs(const ScenariosOptions& options) {
-  cli::CheckReport(options.report);
-  if (!options.csv.empty()) reports::RequireFolderOf(options.csv);
+  cli::CheckReport(options.report, {}, {{"--csv", options.csv}});
   MakeStore(options.store);
 }
 

@@ -15,6 +15,7 @@
 #include <thread>
 
 #include "cli/exit_code.h"
+#include "cli/outputs.h"
 #include "cli/program.h"
 #include "cli/whole_number.h"
 #include "hires/base/error.h"
@@ -346,7 +347,9 @@ int ReplayRequests(const ReplayOptions& options, const std::string& package_fold
 }
 
 int Replay(const ReplayOptions& options, const std::string& package_folder) {
-  if (!options.json.empty()) reports::RequireFolderOf(options.json);
+  cli::CheckOutputs({{"--json", options.json}}, {{"bag", options.bag},
+                                                 {"episode", options.episode.config},
+                                                 {"names", options.episode.names}});
   EpisodeReplay episode = options.episode;
   episode.bag = options.bag;
   episode.json = options.json;

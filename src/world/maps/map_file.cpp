@@ -250,6 +250,20 @@ OccupancyGrid LoadMap(const std::string& yaml_path) {
   return *std::move(grid);
 }
 
+std::string PictureOfMap(const std::string& yaml_path) {
+  MapFindings findings;
+  try {
+    const MapParams params = ReadMapYaml(yaml_path, &findings);
+    return params.image.empty() ? "" : FindPicture(yaml_path, params, &findings);
+  } catch (const base::ConfigError&) {
+    return "";  // what is wrong, LoadMap() says
+  }
+}
+
+std::string PictureToSave(const std::string& yaml_path) {
+  return fs::path(yaml_path).replace_extension(".pgm").string();
+}
+
 void SaveMap(const OccupancyGrid& grid, const std::string& yaml_path) {
   HIRES_CHECK(grid.width >= 1 && grid.height >= 1, "a map has cells");
   GreyImage image{grid.width, grid.height, {}};
@@ -258,7 +272,7 @@ void SaveMap(const OccupancyGrid& grid, const std::string& yaml_path) {
       image.pixels.push_back(GreyOf(grid.at(column, row)));
     }
   }
-  const fs::path image_path = fs::path(yaml_path).replace_extension(".pgm");
+  const fs::path image_path = PictureToSave(yaml_path);
   WriteFile(image_path, FormatPgm(image));
   // {} writes the shortest text that reads back as the same number.
   WriteFile(yaml_path, fmt::format("image: \"{}\"\nresolution: {}\norigin: [{}, {}, 0.0]\n"

@@ -21,7 +21,6 @@
 #include "hires/robot/load_robot.h"
 #include "reports/task/timeline.h"
 #include "reports/text/configuration_hash.h"
-#include "reports/text/report_json.h"
 #include "sim_robot/scenario.h"
 #include "sim_robot/truth.h"
 
@@ -77,14 +76,11 @@ ReportOrigin OriginOf(const AchieveOptions& options, const std::string& package_
 void RequireOutputs(const AchieveOptions& options, const ReportOrigin& origin) {
   std::vector<VerbFile> inputs;
   for (const ReportInput& input : origin.inputs) inputs.push_back({input.what, input.path});
-  CheckOutputs({{"--timeline", options.timeline},
-                {"--record", options.record},
-                {"--json", options.report.json},
-                {"--html", options.report.html},
-                {"--png", options.report.png}},
-               inputs);
-  if (!options.store.empty()) reports::RequireFolderOf(options.store);
-  CheckReport(options.report);
+  inputs.push_back(PictureFile(options.files.map));
+  inputs.push_back({"truth", options.truth});
+  CheckReport(
+      options.report, inputs,
+      {{"--timeline", options.timeline}, {"--record", options.record}, {"--store", options.store}});
 }
 
 /// How things really stand in the end, and what the robot touched: no robot knows it.

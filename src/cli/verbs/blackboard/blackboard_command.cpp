@@ -6,6 +6,7 @@
 #include <iostream>
 #include <nlohmann/json.hpp>
 
+#include "cli/outputs.h"
 #include "cli/verbs/blackboard/blackboard_text.h"
 #include "cli/whole_number.h"
 #include "hires/base/error.h"
@@ -47,12 +48,29 @@ class StoreAccess : public BlackboardAccess {
   knowledge::Store store_;
 };
 
+std::string BlackboardConfigPath(const BlackboardOptions& options,
+                                 const std::string& package_folder) {
+  return options.config.empty() ? package_folder + "/config/blackboard.yaml" : options.config;
+}
+
 std::shared_ptr<const knowledge::Ontology> LoadOntology(const BlackboardOptions& options,
                                                         const std::string& package_folder) {
-  const std::string config =
-      options.config.empty() ? package_folder + "/config/blackboard.yaml" : options.config;
+  const std::string config = BlackboardConfigPath(options, package_folder);
   return std::make_shared<const knowledge::Ontology>(
       knowledge::Ontology::FromFiles(knowledge::ReadBlackboardConfig(config).ontology));
+}
+
+/// `load` writes the store; whatever else is asked reads it.
+void CheckBlackboardFiles(const BlackboardOptions& options, const std::string& package_folder) {
+  std::vector<VerbFile> outputs{{"--json", options.json, true}, {"--output", options.output}};
+  std::vector<VerbFile> inputs{{"knowledge", options.file},
+                               {"configuration", BlackboardConfigPath(options, package_folder)}};
+  if (*options.load) {
+    outputs.push_back({"--store", options.store});
+  } else {
+    inputs.push_back({"store", options.store});
+  }
+  CheckOutputs(outputs, inputs);
 }
 
 /// Only `load` makes a file, or changes one.
@@ -234,6 +252,7 @@ void AddBlackboardVerb(CLI::App* app, BlackboardOptions* o) {
 
 int RunBlackboardVerb(const BlackboardOptions& options, const std::string& package_folder,
                       const ConnectBlackboard& connect) {
+  CheckBlackboardFiles(options, package_folder);
   const std::unique_ptr<BlackboardAccess> blackboard = Open(options, package_folder, connect);
   if (*options.load) return RunLoad(options, blackboard.get());
   if (*options.query) return RunQuery(options, blackboard.get());

@@ -117,15 +117,16 @@ int CheckAll(const DoctorBackends& backends, bool with_physics, const ReportOpti
 
 int CheckTheFiles(const DoctorOptions& options, const DoctorBackends& backends) {
   const ReportOptions& report = options.robot.report;
-  CheckReport(report);
+  const FileDoctorOptions& files = options.files;
+  CheckReport(report, SceneFiles(files.world, files.map, files.robot, files.areas),
+              {{"--png", files.png}});
   Findings findings;
-  ExamineFiles(options.files, backends.package_folder,
+  ExamineFiles(files, backends.package_folder,
                [&](const Finding& finding) { findings.Add(finding); });
   ReportOrigin origin;
   origin.verb = "doctor";
   if (findings.passed) {  // else one of them may not be there
-    origin.inputs = {
-        {"world", options.files.world}, {"map", options.files.map}, {"robot", options.files.robot}};
+    origin.inputs = {{"world", files.world}, {"map", files.map}, {"robot", files.robot}};
   }
   WriteReport(report, origin, {{"ok", findings.passed}, {"findings", findings.list}});
   return findings.passed ? kExitRecommended : kExitBadInput;

@@ -21,7 +21,6 @@
 #include "hires/world/world.h"
 #include "reports/film/picture_files.h"
 #include "reports/film/top_view.h"
-#include "reports/text/report_json.h"
 
 namespace hires::cli {
 namespace {
@@ -210,7 +209,6 @@ void ExamineFiles(const FileDoctorOptions& options, const std::string& package_f
                   const std::function<void(const Finding&)>& say_all) {
   Told told(say_all);
   const Say say = [&](const Finding& finding) { told(finding); };
-  if (!options.png.empty()) reports::RequireFolderOf(options.png);
   imagination::SetupConfig config = ConfigOf(options, package_folder);
   const WarningsAsFindings warnings(say);
   if (!LookAtFiles(options, say, &config)) return;

@@ -151,11 +151,13 @@ int RunRobotDoctor(const RobotDoctorOptions& options, const std::string& package
   const auto or_default = [&](const std::string& path, const char* name) {
     return path.empty() ? package_folder + "/config/robots/" + name : path;
   };
+  const std::string names = or_default(options.names, "pr2_names.yaml");
+  const std::string profile = or_default(options.profile, "pr2.yaml");
+  CheckReport(options.report, {{"names", names}, {"profile", profile}});
   const RobotNeeds needs =
-      NeedsOf(control::ReadRobotNames(or_default(options.names, "pr2_names.yaml")), types,
+      NeedsOf(control::ReadRobotNames(names), types,
               navigation::ReadBaseGuardParams(package_folder + "/config/base_guard.yaml"));
-  const auto robot = robot::LoadRobot(or_default(options.profile, "pr2.yaml"));
-  CheckReport(options.report);
+  const auto robot = robot::LoadRobot(profile);
   const RobotView view = look(options.seconds, needs);
   const RobotFindings findings = JudgeRobot(options, needs, robot.profile, view);
   std::cout << RobotReport(needs, view, findings) << std::flush;

@@ -207,27 +207,46 @@ void PrintKin(const ImagineQuery& query, QueryScene* scene) {
   }
 }
 
+/// What the answer rests on here.
+std::vector<VerbFile> InputsOf(const ImagineOptions& options, const ImagineQuery& query) {
+  const imagination::SetupConfig& files = query.setup;
+  const bool has_uncertainty = files.uncertainty != "none";
+  const std::string config = ConfigPath(options);
+  std::vector<VerbFile> inputs{
+      {"settings", config},
+      {"scene",
+       options.scene.empty() ? imagination::ReadClientConfig(config).scene : options.scene},
+      {"world", files.map.empty() ? files.world : ""},
+      {"map", files.map},
+      {"robot", robot::FileOfRobot(files.robot)},
+      {"objects", files.objects},
+      {"uncertainty", has_uncertainty ? files.uncertainty : ""},
+      {"uncertainty over it", files.uncertainty_over}};
+  for (const std::string& object : files.extra_objects) inputs.push_back({"object", object});
+  for (const std::string& file : AreaFilesOf(options.areas)) inputs.push_back({"areas", file});
+  return inputs;
+}
+
+/// Nothing that is asked for is written over what is read, and all can be written.
+void CheckImagineFiles(const ImagineOptions& options, const ImagineQuery& query) {
+  std::vector<VerbFile> inputs = InputsOf(options, query);
+  inputs.push_back(PictureFile(query.setup.map));
+  for (const std::string& library : options.action_libraries)
+    inputs.push_back({"actions", library});
+  std::vector<VerbFile> outputs = FilesOf(options.save);
+  for (const std::string& strip : StripFiles(options.report.html))
+    outputs.push_back({"picture of --html", strip});
+  CheckReport(options.report, inputs, outputs);
+}
+
 /// Running nodes have files of their own, which they and their workers compare among themselves.
 ReportOrigin OriginOf(const ImagineOptions& options, const ImagineQuery& query, QueryScene* scene) {
   ReportOrigin origin;
   origin.verb = "imagine";
   origin.is_local = options.local;
   if (!options.local || !IsWanted(options.report)) return origin;
-  const imagination::SetupConfig& files = query.setup;
-  const bool has_uncertainty = files.uncertainty != "none";
-  const std::string config = ConfigPath(options);
-  origin.inputs = {{"settings", config},
-                   {"scene", options.scene.empty() ? imagination::ReadClientConfig(config).scene
-                                                   : options.scene},
-                   {"world", files.map.empty() ? files.world : ""},
-                   {"map", files.map},
-                   {"robot", robot::FileOfRobot(files.robot)},
-                   {"objects", files.objects},
-                   {"uncertainty", has_uncertainty ? files.uncertainty : ""},
-                   {"uncertainty over it", files.uncertainty_over}};
-  for (const std::string& object : files.extra_objects) origin.inputs.push_back({"object", object});
-  for (const std::string& file : AreaFilesOf(options.areas))
-    origin.inputs.push_back({"areas", file});
+  for (const VerbFile& input : InputsOf(options, query))
+    origin.inputs.emplace_back(input.what, input.path);
   const imagination::ImaginationSetup& setup = scene->setup();
   origin.hashes = {{"world", base::HexOf(setup.world_hash)},
                    {"robot", base::HexOf(setup.robot_hash)},
@@ -291,7 +310,7 @@ int ExitCodeOf(const imagination::Report& report) {
 int RunImagineVerb(const ImagineOptions& options, const ImagineBackends& backends,
                    const std::function<bool()>& cancelled) {
   const ImagineQuery query = MakeQuery(options);
-  CheckReport(options.report);
+  CheckImagineFiles(options, query);
   CheckSaveRollout(options.save, query, backends.make_rollout_bag);
   ProgressDisplay display;
   imagination::OnInterim on_interim;
@@ -301,7 +320,6 @@ int RunImagineVerb(const ImagineOptions& options, const ImagineBackends& backend
   }
   QueryScene scene(query);
   const ReportOrigin origin = OriginOf(options, query, &scene);
-  RefuseInputs(options.report, origin.inputs);
   if (options.local) {
     RequireNames(query, &scene);
     PrintKin(query, &scene);

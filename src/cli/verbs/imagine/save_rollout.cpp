@@ -13,7 +13,6 @@
 #include "hires/base/text.h"
 #include "hires/imagination/rollout_choice.h"
 #include "reports/film/rollout_film.h"
-#include "reports/text/report_json.h"
 
 namespace hires::cli {
 namespace {
@@ -22,12 +21,9 @@ using imagination::RolloutRecording;
 
 constexpr int kStripPictures = 6;  // of pages; of --strip by default
 
-std::vector<std::string> FilesOf(const SaveRolloutOptions& options) {
-  std::vector<std::string> files;
-  for (const std::string& path : {options.csv, options.bag, options.gif, options.strip}) {
-    if (!path.empty()) files.push_back(path);
-  }
-  return files;
+std::string StripFile(const std::string& html, const std::string& which) {
+  const std::string stem = std::filesystem::path(html).replace_extension().string();
+  return fmt::format("{}_{}.png", stem, which);
 }
 
 /// @throws base::ConfigError for one that no answer to the query has.
@@ -120,6 +116,21 @@ void AddSaveRolloutOptions(CLI::App* app, SaveRolloutOptions* o) {
       ->needs(strip);
 }
 
+std::vector<VerbFile> FilesOf(const SaveRolloutOptions& options) {
+  std::vector<VerbFile> files;
+  for (const VerbFile& file :
+       {VerbFile{"--csv", options.csv}, VerbFile{"--bag", options.bag},
+        VerbFile{"--gif", options.gif}, VerbFile{"--strip", options.strip}}) {
+    if (!file.path.empty()) files.push_back(file);
+  }
+  return files;
+}
+
+std::vector<std::string> StripFiles(const std::string& html) {
+  if (html.empty()) return {};
+  return {StripFile(html, "worst"), StripFile(html, "median")};
+}
+
 void CheckSaveRollout(const SaveRolloutOptions& options, const ImagineQuery& query,
                       const MakeRolloutBag& make_bag) {
   if (options.which.empty()) return;
@@ -133,7 +144,6 @@ void CheckSaveRollout(const SaveRolloutOptions& options, const ImagineQuery& que
   if (!options.bag.empty() && !make_bag) {
     throw base::ConfigError("--bag: this build has no ROS to write bags with; use --csv FILE");
   }
-  for (const std::string& path : FilesOf(options)) reports::RequireFolderOf(path);
 }
 
 void SaveRollout(const SaveRolloutOptions& options, int threads, QueryScene* scene,
@@ -153,14 +163,13 @@ void SaveRollout(const SaveRolloutOptions& options, int threads, QueryScene* sce
   WritePictures(options, setup, recording, beside ? &beside->recording : nullptr, threads);
   Print(*replayed);
   if (beside) Print(*beside);
-  for (const std::string& path : FilesOf(options)) std::cout << "saved to " << path << '\n';
+  for (const VerbFile& file : FilesOf(options)) std::cout << "saved to " << file.path << '\n';
 }
 
 std::vector<Strip> WriteStrips(const std::string& html, int threads, QueryScene* scene,
                                const imagination::Report& report,
                                const std::function<bool()>& cancelled) {
   const imagination::RolloutSetup& setup = scene->rollouts();
-  const std::string stem = std::filesystem::path(html).replace_extension().string();
   reports::FilmParams params;
   params.threads = threads;
   std::vector<Strip> strips;
@@ -176,7 +185,7 @@ std::vector<Strip> WriteStrips(const std::string& html, int threads, QueryScene*
         fmt::format("{}: rollout {} of {}{}{}", what, recording.index, ToString(recording.action),
                     recording.events.empty() ? "" : "; last ",
                     recording.events.empty() ? "" : recording.events.back().text);
-    strips.push_back({caption, fmt::format("{}_{}.png", stem, which)});
+    strips.push_back({caption, StripFile(html, which)});
     reports::WriteStrip({setup, recording, params}, kStripPictures, strips.back().file);
   }
   return strips;

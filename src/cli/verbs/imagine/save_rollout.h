@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "cli/outputs.h"
 #include "cli/verbs/imagine/imagine_query.h"
 #include "cli/verbs/imagine/query_scene.h"
 #include "hires/imagination/rollout_recording.h"
@@ -22,9 +23,12 @@ struct SaveRolloutOptions {
 };
 void AddSaveRolloutOptions(CLI::App* app, SaveRolloutOptions* options);
 
+/// The files that it is saved to, by their options.
+std::vector<VerbFile> FilesOf(const SaveRolloutOptions& options);
+
 /// Before anything is imagined.  @throws base::ConfigError: no such choice, a rollout
-/// or an alternative that the query does not have, nowhere to save it to,
-/// folders that are not there, a bag that this build cannot write.
+/// or an alternative that the query does not have, nowhere to save it to, a bag that this build
+/// cannot write.
 void CheckSaveRollout(const SaveRolloutOptions& options, const ImagineQuery& query,
                       const MakeRolloutBag& make_bag);
 
@@ -47,5 +51,9 @@ struct Strip {
 std::vector<Strip> WriteStrips(const std::string& html, int threads, QueryScene* scene,
                                const imagination::Report& report,
                                const std::function<bool()>& cancelled);
+
+/// The files that WriteStrips() may write.
+/// @param html  empty: no page, and no pictures.
+std::vector<std::string> StripFiles(const std::string& html);
 
 }  // namespace hires::cli

@@ -6,6 +6,7 @@
 
 #include "cli/crew_display.h"
 #include "cli/exit_code.h"
+#include "cli/outputs.h"
 #include "cli/own_object.h"
 #include "cli/whole_number.h"
 #include "hires/base/process.h"
@@ -28,6 +29,17 @@ imagination::SetupConfig SetupOf(const LimitsOptions& o, const std::string& pack
   imagination::OverridePaths({}, o.robot, o.objects, o.uncertainty, &setup);
   *object = NameOf(o.object, &setup);
   return setup;
+}
+
+void CheckLimitsFiles(const LimitsOptions& o, const imagination::SetupConfig& setup) {
+  std::vector<VerbFile> inputs = SceneFiles(setup.world, "", setup.robot, {});
+  for (const VerbFile& input : {VerbFile{"scene", o.scene}, VerbFile{"objects", setup.objects},
+                                VerbFile{"uncertainty", setup.uncertainty},
+                                VerbFile{"uncertainty over it", setup.uncertainty_over}}) {
+    inputs.push_back(input);
+  }
+  for (const std::string& object : setup.extra_objects) inputs.push_back({"object", object});
+  CheckOutputs({{"--yaml", o.yaml}, {"--json", o.json}}, inputs);
 }
 
 /// What was derived of the robot, a line each; "" where its files say all.
@@ -79,11 +91,9 @@ void AddLimitsVerb(CLI::App* app, LimitsOptions* options) {
 
 int RunLimitsVerb(const LimitsOptions& options, const std::string& package_folder,
                   const std::function<bool()>& cancelled) {
-  for (const std::string& path : {options.json, options.yaml}) {
-    if (!path.empty()) reports::RequireFolderOf(path);
-  }
   reports::LimitsRequest request;
   const imagination::SetupConfig config = SetupOf(options, package_folder, &request.object);
+  CheckLimitsFiles(options, config);
   const imagination::ImaginationSetup setup = imagination::LoadImaginationSetup(config);
   request.is_controller_assumed = robot::IsMotionAssumed(config.robot);
   request.max_fall = options.max_fall;

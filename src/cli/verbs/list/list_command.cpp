@@ -13,6 +13,7 @@
 
 #include "cli/exit_code.h"
 #include "cli/list_rows.h"
+#include "cli/outputs.h"
 #include "cli/verbs/imagine/imagine_start.h"
 #include "hires/base/error.h"
 #include "hires/base/param_reader.h"
@@ -26,7 +27,6 @@
 #include "hires/world/object_catalogue.h"
 #include "hires/world/occupancy_grid.h"
 #include "imagination/area_file.h"
-#include "reports/text/report_json.h"
 #include "sim_robot/scenario.h"
 
 namespace hires::cli {
@@ -346,20 +346,39 @@ std::vector<std::string> Kinds(bool with_tasks) {
   return kinds;
 }
 
+/// What a list is made of is not written over by it.
+void CheckListFiles(const ListOptions& o, const Sources& sources) {
+  const imagination::SetupConfig& setup = sources.setup;
+  std::vector<VerbFile> inputs = SceneFiles(setup.world, setup.map, setup.robot, o.areas);
+  for (const VerbFile& input :
+       {VerbFile{"scene", o.scene}, VerbFile{"objects", setup.objects},
+        VerbFile{"uncertainty", setup.uncertainty},
+        VerbFile{"uncertainty over it", setup.uncertainty_over}, VerbFile{"domain", o.domain}}) {
+    inputs.push_back(input);
+  }
+  for (const std::string& library : o.action_libraries) inputs.push_back({"actions", library});
+  CheckOutputs({{"--json", o.json, true}}, inputs);
+}
+
 /// @throws base::ConfigError naming what can be listed.
 Rows ListRowsOf(const ListOptions& options, const std::string& package_folder,
                 const TaskLister& tasks) {
   if (options.what == kTasks) {
     if (!tasks)
       throw base::ConfigError("list: this program plans nothing; 'hires list tasks' does");
-    return tasks(options.domain.empty() ? package_folder + "/config/domains/restaurant.lisp"
-                                        : options.domain);
+    const std::string domain = options.domain.empty()
+                                   ? package_folder + "/config/domains/restaurant.lisp"
+                                   : options.domain;
+    CheckOutputs({{"--json", options.json, true}}, {{"domain", domain}});
+    return tasks(domain);
   }
   const auto lister = Listers().find(options.what);
   if (lister == Listers().end()) {
     throw base::ConfigError(base::UnknownName("list", options.what, Kinds(bool(tasks))));
   }
-  return lister->second(SourcesOf(options, package_folder));
+  const Sources sources = SourcesOf(options, package_folder);
+  CheckListFiles(options, sources);
+  return lister->second(sources);
 }
 
 }  // namespace
@@ -395,7 +414,6 @@ int RunListVerb(const ListOptions& options, const std::string& package_folder,
     throw base::ConfigError(fmt::format("list: nothing came, wanted one of '{}'",
                                         base::Join(Kinds(bool(tasks)), "', '")));
   }
-  if (!options.json.empty() && options.json != "-") reports::RequireFolderOf(options.json);
   PrintList(options.what, ListRowsOf(options, package_folder, tasks), options.json);
   return kExitRecommended;
 }

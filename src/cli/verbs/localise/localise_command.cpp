@@ -289,11 +289,15 @@ void AddLocaliseVerb(CLI::App* app, LocaliseOptions* o) {
 
 int RunLocaliseVerb(const LocaliseOptions& options, const std::string& package_folder,
                     const ReadDriveBag& read_bag) {
-  CheckOutputs(
-      {{"--trajectory", options.trajectory}, {"--json", options.json, true}},
-      {{"log", options.drive.log}, {"map", options.map}, {"configuration", options.config}});
-  const auto config = localisation::ReadLocalisationConfig(base::ParamReader::FromFile(
-      options.config.empty() ? package_folder + "/config/localisation.yaml" : options.config));
+  const std::string config_path =
+      options.config.empty() ? package_folder + "/config/localisation.yaml" : options.config;
+  CheckOutputs({{"--trajectory", options.trajectory}, {"--json", options.json, true}},
+               {{"log", options.drive.log},
+                {"map", options.map},
+                PictureFile(options.map),
+                {"configuration", config_path}});
+  const auto config =
+      localisation::ReadLocalisationConfig(base::ParamReader::FromFile(config_path));
   const Answer answer = Localise(options, config.filter, package_folder, read_bag);
   if (answer.has_path())
     localisation::WriteTumTrajectory(answer.localised.path, options.trajectory);

@@ -272,12 +272,17 @@ void AddMapVerb(CLI::App* app, MapOptions* o) {
 int RunMapVerb(const MapOptions& options, const std::string& package_folder,
                const ReadDriveBag& read_bag, const std::function<bool()>& cancelled) {
   const std::string map = MapFile(options.output);
+  std::vector<VerbFile> inputs =
+      SceneFiles(options.world, options.map, options.robot, options.areas);
+  inputs.push_back({"scene", options.scene});
+  inputs.push_back({"log", options.drive.log});
   CheckOutputs({{"--output", map},
+                {"picture of --output", world::PictureToSave(map)},
                 {"--trajectory", options.trajectory},
                 {"--json", options.json, true},
                 {"--log", options.log_output},
                 {"--truth", options.truth_output}},
-               {{"log", options.drive.log}});
+               inputs);
   MapResult result;
   std::optional<Judgement> judgement;
   if (options.is_driven) {

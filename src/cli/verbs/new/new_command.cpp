@@ -7,6 +7,7 @@
 #include <iostream>
 
 #include "cli/exit_code.h"
+#include "cli/outputs.h"
 #include "hires/base/error.h"
 #include "hires/base/text.h"
 #include "hires/robot/load_robot.h"
@@ -48,12 +49,12 @@ int RunNewVerb(const NewOptions& options) {
   const std::string robot = base::Join(options.robot, " ");
   const std::string output =
       options.output.empty() ? ProfileNameFor(options.robot.front()) : options.output;
+  CheckOutputs({{"--output", output}}, {{"robot", options.robot.front()}});
   std::error_code error;
   if (!options.is_forced && fs::is_regular_file(output, error)) {
     throw base::ConfigError(fmt::format(
         "{}: is there already; write to another file by --output, or over it by --force", output));
   }
-  base::RequireReplaceable(output);
   base::ReplaceTextFile(output,
                         robot::WriteProfile(robot, fs::path(output).parent_path().string()));
   std::cout << fmt::format(

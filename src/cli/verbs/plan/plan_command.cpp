@@ -280,13 +280,11 @@ void AddPlanVerb(CLI::App* app, PlanOptions* options) {
 }
 
 int RunPlanVerb(const PlanOptions& options, const std::function<bool()>& cancelled) {
-  CheckReport(options.report);
+  CheckReport(options.report, {{"domain", options.domain}, {"problem", options.problem}});
   ReportOrigin origin;
   origin.verb = "plan";
-  if (IsWanted(options.report)) {
+  if (IsWanted(options.report))
     origin.inputs = {{"domain", options.domain}, {"problem", options.problem}};
-    RefuseInputs(options.report, origin.inputs);
-  }
   Session session = Read(options);
   session.request.stop = StopQuestionFor(options, cancelled);
   Search(&session);

@@ -203,11 +203,13 @@ void AddRecogniseVerb(CLI::App* app, RecogniseOptions* o) {
 }
 
 int RunRecogniseVerb(const RecogniseOptions& options, const std::string& package_folder) {
-  CheckOutputs({{"--json", options.json, true}, {"--labels", options.labels}},
-               {{"cloud", options.cloud}});
-  perception::RecogniserConfig config = perception::ReadRecogniserConfig(
-      options.config.empty() ? package_folder + "/config/recogniser.yaml" : options.config,
-      options.objects);
+  const std::string config_path =
+      options.config.empty() ? package_folder + "/config/recogniser.yaml" : options.config;
+  CheckOutputs(
+      {{"--json", options.json, true}, {"--labels", options.labels}},
+      {{"cloud", options.cloud}, {"objects", options.objects}, {"configuration", config_path}});
+  perception::RecogniserConfig config =
+      perception::ReadRecogniserConfig(config_path, options.objects);
   if (options.is_segmenting) config.catalogue.clear();
   perception::PointCloud cloud = perception::ReadPcd(options.cloud);
   CheckHasPoints(cloud, options.cloud);
