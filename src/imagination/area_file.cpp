@@ -27,6 +27,11 @@ constexpr char kNoTurn[] = "goals without an orientation have a yaw of 0";
 constexpr int kDeepest = 16;         // maps and lists in one another
 constexpr int kMostNodes = 200'000;  // an alias may stand for many
 constexpr std::size_t kMostAreas = 2000, kMostNamed = 10;
+constexpr double kSamePose = 1e-9;  // [m], [rad]
+
+/// What a goal is wrapped in.
+const std::vector<std::string> kWrappers{"target_pose", "goal_pose", "pose",  "goal",
+                                         "node",        "waypoint",  "target"};
 
 int LineOf(const YAML::Node& node) { return node.Mark().line + 1; }
 
@@ -40,7 +45,68 @@ struct Quaternion {
   double up() const { return 1.0 - 2.0 * (x * x + y * y) / (length() * length()); }
 };
 
+/// Of a quaternion in a list, which number is w. Nav2's panel for RViz writes it first.
+enum class Order { kWFirst, kWLast };
+
+Quaternion InOrder(const std::vector<double>& q, Order order) {
+  return order == Order::kWFirst ? Quaternion{q[1], q[2], q[3], q[0]}
+                                 : Quaternion{q[0], q[1], q[2], q[3]};
+}
+
+/// The order in which all of a file's quaternions turn robots that stand on the floor. Near 0 and
+/// near a half turn they do so in both: then the one in which they turn about z more exactly, and
+/// of numbers that leave it open, (0, 0, 0, 1), the order in which they turn nothing.
+/// @return nothing: there is none.
+std::optional<Order> OrderOf(const std::vector<std::vector<double>>& turns) {
+  double tilt[2] = {0.0, 0.0};
+  bool fits[2] = {true, true};
+  for (const std::vector<double>& turn : turns) {
+    for (const Order order : {Order::kWFirst, Order::kWLast}) {
+      const Quaternion q = InOrder(turn, order);
+      tilt[static_cast<int>(order)] += (q.x * q.x + q.y * q.y) / (q.length() * q.length());
+      fits[static_cast<int>(order)] &= q.up() > 0.5;
+    }
+  }
+  if (!fits[0] && !fits[1]) return std::nullopt;
+  const bool is_open = fits[0] && fits[1] && !turns.empty();
+  if (!is_open) return fits[0] ? Order::kWFirst : Order::kWLast;
+  return tilt[0] < tilt[1] ? Order::kWFirst : Order::kWLast;
+}
+
+/// Where names may begin and numbers do not.
+bool BeginsAsName(const YAML::Node& node) {
+  if (!node.IsScalar() || node.Scalar().empty()) return false;
+  return node.Scalar().find_first_of("0123456789+-.[{") != 0;
+}
+
+/// {x, y, z} or [x, y, z] before {x, y, z, w}, [x, y, z, w] or [roll, pitch, yaw] of one goal.
+/// @param is_named  by a word for one goal; else lists of three are goals.
+bool IsPair(const YAML::Node& node, bool is_named) {
+  if (!node.IsSequence() || node.size() != 2) return false;
+  const YAML::Node p = node[0], turn = node[1];
+  if (p.IsMap() && turn.IsMap())
+    return area_keys::FlatPositionIn(p)[0] && !Find(p, {"w"}) && Find(turn, {"w"}) &&
+           Find(turn, {"z"});
+  if (!p.IsSequence() || !turn.IsSequence()) return false;
+  const std::vector<double> numbers = NumbersOf(p), angles = NumbersOf(turn);
+  if (numbers.size() != 2 && numbers.size() != 3) return false;
+  if (angles.size() == 4) return true;
+  return is_named && numbers.size() == 3 && numbers[2] == 0.0 && angles.size() == 3 &&
+         angles[0] == 0.0 && angles[1] == 0.0;
+}
+
+/// Of one goal, by its name: "goals" and "patrol" hold several.
+bool NamesOne(const std::string& name) {
+  const std::string lower = base::ToLower(name);
+  return !lower.empty() && lower.back() != 's' && lower != "patrol" && lower != "route" &&
+         lower != "path" && lower != "tour";
+}
+
 bool LooksLikePose(const YAML::Node& node) {
+  if (node.IsScalar()) {
+    const std::size_t size = NumbersOf(node).size();
+    return size == 3 || size == 7;
+  }
   if (node.IsSequence()) {
     const std::size_t size = node.size();
     return size > 0 && node[0].IsScalar() && NumbersOf(node).size() == size;
@@ -51,21 +117,41 @@ bool LooksLikePose(const YAML::Node& node) {
   return pose && (pose.IsSequence() || LooksLikePose(pose));
 }
 
+/// Whether it is a goal, or has one in it: then what stands beside it is not all there is.
+bool HoldsPose(const YAML::Node& node) {
+  if (LooksLikePose(node)) return true;
+  if (node.IsSequence()) return std::any_of(node.begin(), node.end(), LooksLikePose);
+  return node.IsMap() && std::any_of(node.begin(), node.end(),
+                                     [](const auto& entry) { return LooksLikePose(entry.second); });
+}
+
+/// [dock, 1, 2, 0.5], or [dock, [1, 2, 0.5]] with any pose.
+bool IsNamedList(const YAML::Node& node) {
+  if (!node.IsSequence() || node.size() < 2 || !BeginsAsName(node[0])) return false;
+  if (node.size() == 2) return !node[1].IsScalar() && LooksLikePose(node[1]);
+  return node.size() == 4 || node.size() == 8;
+}
+
 class AreaReader {
  public:
   explicit AreaReader(const std::string& path) : path_(path) {}
 
   std::vector<NamedArea> Read() {
-    for (const YAML::Node& document : Documents()) {
-      RefuseMap(document);
-      Walk(document, "", 0);
-    }
+    const std::vector<YAML::Node> documents = Documents();
+    AreaReader first(path_);  // the order of a quaternion's numbers is one for the whole file
+    first.WalkAll(documents);
+    order_ = OrderOf(first.turns_);
+    WalkAll(documents);
     for (const auto& [what, places] : noted_) {
       base::Log(base::LogLevel::kWarn,
                 fmt::format("{}:{}: {} ({} in all)", path_, places.first, what, places.count));
     }
     passed_keys_.Tell(path_, "which say nothing of a goal; wanted x, y [m] and yaw [rad]");
     passed_parts_.Tell(path_, "which by their names hold no goals");
+    beside_.Tell(path_, "which stand beside the one place of a goal");
+    unread_.Tell(path_,
+                 "of which no goal could be made; wanted name: [x, y, yaw] [m, m, rad], in numbers "
+                 "alone");
     if (areas_.empty() && errors_.empty()) {
       errors_.push_back(fmt::format(
           "{}: has no goal; wanted name: [x, y, yaw] [m, m, rad], or poses with position and "
@@ -102,6 +188,13 @@ class AreaReader {
     }
   };
 
+  void WalkAll(const std::vector<YAML::Node>& documents) {
+    for (const YAML::Node& document : documents) {
+      RefuseMap(document);
+      Walk(document, "", 0);
+    }
+  }
+
   void Fail(int line, const std::string& what) {
     errors_.push_back(fmt::format("{}:{}: {}", path_, line, what));
   }
@@ -129,20 +222,86 @@ class AreaReader {
       throw base::ConfigError(
           fmt::format("{}:{}: is too deep or too long for a file of goals", path_, LineOf(node)));
     }
-    if (node.IsMap()) CheckFrame(node);
-    if (LooksLikePose(node)) return Add(node, name);
-    if (node.IsSequence()) {
-      for (const YAML::Node& item : node) Walk(item, "", depth + 1);
+    if (!node.IsMap()) return WalkInside(node, name, depth);
+    CheckFrame(node);
+    const double outer = unit_;
+    const int num_before = num_goals_;
+    const area_keys::Unit unit = area_keys::UnitIn(node);
+    if (unit.factor) {
+      unit_ = *unit.factor;
+    } else if (unit.said) {
+      Fail(LineOf(unit.said), fmt::format("'{}' is no unit of angles, wanted rad or deg",
+                                          unit.said.IsScalar() ? unit.said.Scalar() : "a list"));
     }
-    if (node.IsMap()) WalkMap(node, name, depth);
+    WalkInside(node, name, depth);
+    if (unit.factor && unit_ != 1.0 && num_goals_ == num_before) {
+      const std::string what = "says degrees where no goal is; write it beside the goals or above";
+      unit.is_of_angles ? Fail(LineOf(unit.said), what) : Note(LineOf(unit.said), what);
+    }
+    unit_ = outer;
+  }
+
+  void WalkInside(const YAML::Node& node, const std::string& name, int depth) {
+    if (LooksLikePose(node)) return Add(node, name);
+    if (node.IsScalar()) num_numbers_ += area_keys::CountNumbers(node);
+    if (node.IsMap()) return WalkMap(node, name, depth);
+    if (!node.IsSequence()) return;
+    if (IsPair(node, NamesOne(name))) return Keep(name, LineOf(node), PoseOfPair(node));
+    if (IsNamedList(node)) {
+      const std::string own = node[0].Scalar();
+      if (node.size() == 2) return Walk(node[1], own, depth + 1);
+      const std::vector<double> numbers = NumbersAfterName(node);
+      if (!numbers.empty()) return Keep(own, LineOf(node), PoseOfNumbers(numbers, LineOf(node)));
+    }
+    for (const YAML::Node& item : node) WalkPart(item, "", LineOf(item), depth + 1);
+  }
+
+  /// Says of it if it holds numbers, and no goal comes of them.
+  /// @param name  that it gives its goal; empty: it is an item of a list.
+  void WalkPart(const YAML::Node& part, const std::string& name, int line, int depth) {
+    const int num_goals = num_goals_, num_numbers = num_numbers_;
+    const std::size_t num_unread = unread_.keys.size();
+    Walk(part, name, depth);
+    if (num_goals_ != num_goals || num_numbers_ - num_numbers < 2) return;
+    unread_.keys.resize(num_unread);  // they lie within it
+    unread_.Add(fmt::format("{} (line {})", name.empty() ? "an item" : name, line), line);
+  }
+
+  static std::vector<double> NumbersAfterName(const YAML::Node& list) {
+    std::vector<double> numbers;
+    for (std::size_t i = 1; i < list.size(); ++i) {
+      const auto number = area_keys::NumberIn(list[i]);
+      if (!number) return {};
+      numbers.push_back(*number);
+    }
+    return numbers;
+  }
+
+  /// What a goal is wrapped in says nothing; beside it may stand what only looks like goals. Where
+  /// no name stands beside it, and other goals do, it is a name itself.
+  static YAML::Node WrappedIn(const YAML::Node& map, int depth) {
+    for (const std::string& wrapper : kWrappers) {
+      const YAML::Node inner = Find(map, {wrapper});
+      const bool is_named = !area_keys::NameIn(map).empty();
+      if (!inner || !(inner.IsMap() || (LooksLikePose(inner) && (depth > 0 || is_named)))) continue;
+      const bool is_one = std::none_of(map.begin(), map.end(), [&](const auto& entry) {
+        return !entry.second.is(inner) && !area_keys::IsNoGoal(entry.first.Scalar()) &&
+               HoldsPose(entry.second);
+      });
+      if (is_named || is_one) return inner;
+    }
+    return YAML::Node(YAML::NodeType::Undefined);
   }
 
   void WalkMap(const YAML::Node& map, const std::string& name, int depth) {
     const std::string own = OwnName(map, name);
-    // What a goal is wrapped in says nothing; beside it may stand what only looks like goals.
-    for (const char* wrapper : {"target_pose", "goal_pose", "pose", "goal", "node", "waypoint"}) {
-      const YAML::Node inner = Find(map, {wrapper});
-      if (inner && inner.IsMap()) return Walk(inner, own, depth + 1);
+    if (const YAML::Node inner = WrappedIn(map, depth)) {
+      for (const auto& entry : map) {
+        if (entry.second.is(inner) || !HoldsPose(entry.second)) continue;
+        const std::string key = entry.first.Scalar();
+        (area_keys::IsNoGoal(key) ? passed_parts_ : beside_).Add(key, LineOf(entry.first));
+      }
+      return Walk(inner, own, depth + 1);
     }
     std::set<std::string> done{"header", "info"};
     for (const area_keys::ParallelLists& lists : area_keys::ParallelListsIn(map)) {
@@ -150,13 +309,12 @@ class AreaReader {
       done.insert(lists.keys.begin(), lists.keys.end());
     }
     for (const auto& entry : map) {
-      if (!entry.second.IsMap() && !entry.second.IsSequence()) continue;
       const std::string key = entry.first.IsScalar() ? entry.first.Scalar() : "";
       if (done.count(base::ToLower(key)) > 0) continue;
       if (area_keys::IsNoGoal(key)) {
-        passed_parts_.Add(key, LineOf(entry.first));
+        if (!entry.second.IsScalar()) passed_parts_.Add(key, LineOf(entry.first));
       } else {
-        Walk(entry.second, key, depth + 1);
+        WalkPart(entry.second, key, LineOf(entry.first), depth + 1);
       }
     }
   }
@@ -173,7 +331,7 @@ class AreaReader {
     }
     for (std::size_t i = 0; i < x.size(); ++i) {
       const auto turn =
-          lists.yaw.value ? std::make_optional(lists.yaw.factor * yaw[i]) : std::nullopt;
+          lists.yaw.value ? std::make_optional(FactorOf(lists.yaw) * yaw[i]) : std::nullopt;
       Keep("", line, Pose(line, x[i], y[i], turn));
     }
   }
@@ -207,6 +365,7 @@ class AreaReader {
 
   /// @param pose  nothing where an error says why.
   void Keep(const std::string& own, int line, const std::optional<geometry::Pose2>& pose) {
+    ++num_goals_;
     const std::string name = own.empty() ? fmt::format("goal{}", ++num_unnamed_) : own;
     if (name.find_first_of(",:()") != std::string::npos) {
       Fail(line, fmt::format("'{}' is called with one of , : ( ), which mean something else in "
@@ -214,6 +373,10 @@ class AreaReader {
                              name));
     }
     const auto [known, is_new] = lines_.emplace(base::ToLower(name), line);
+    if (!is_new && pose && IsKept(name, *pose)) {
+      height_.reset();
+      return Note(line, "goals that are there again, with the same name and pose, are kept once");
+    }
     if (!is_new) {
       Fail(line, fmt::format("'{}' is there twice, first in line {} (case is ignored)", name,
                              known->second));
@@ -223,15 +386,30 @@ class AreaReader {
           fmt::format("{}:{}: has more than {} goals; leave those out that are no question", path_,
                       line, kMostAreas));
     }
-    if (pose) areas_.push_back({name, *pose, height_});
+    if (pose) {
+      kept_.emplace(base::ToLower(name), areas_.size());
+      areas_.push_back({name, *pose, height_});
+    }
     height_.reset();
   }
 
+  /// As a round comes back to where it began.
+  bool IsKept(const std::string& name, const geometry::Pose2& pose) const {
+    const auto kept = kept_.find(base::ToLower(name));
+    if (kept == kept_.end()) return false;
+    const NamedArea& area = areas_[kept->second];
+    return area.z == height_ && std::abs(area.X_MA.x - pose.x) < kSamePose &&
+           std::abs(area.X_MA.y - pose.y) < kSamePose &&
+           std::abs(area.X_MA.yaw - pose.yaw) < kSamePose;
+  }
+
   std::optional<geometry::Pose2> PoseOfList(const YAML::Node& list) {
-    const std::vector<double> n = NumbersOf(list);
-    const int line = LineOf(list);
+    return PoseOfNumbers(NumbersOf(list), LineOf(list));
+  }
+
+  std::optional<geometry::Pose2> PoseOfNumbers(const std::vector<double>& n, int line) {
     if (n.size() == 2) return Pose(line, n[0], n[1], std::nullopt);
-    if (n.size() == 3) return Checked(line, {n[0], n[1], n[2]});
+    if (n.size() == 3) return Checked(line, {n[0], n[1], unit_ * n[2]});
     if (n.size() == 7) {
       const std::optional<double> yaw = YawOf({n[3], n[4], n[5], n[6]}, false, line);
       if (!yaw) return std::nullopt;
@@ -292,19 +470,57 @@ class AreaReader {
     return Pose(line, (*position)[0], (*position)[1], yaw);
   }
 
-  /// {pose: [x, y, z], orientation: [w, x, y, z]} of Nav2's panel, or a list alone.
+  /// {pose: [x, y, z], orientation: [w, x, y, z]} of Nav2's panel, or a list alone, or with
+  /// another turn beside it.
   std::optional<geometry::Pose2> PoseOfPanel(const YAML::Node& map, const YAML::Node& list) {
     const int line = LineOf(map);
-    const YAML::Node turn = Find(map, {"orientation"});
-    if (!turn) return PoseOfList(list);
-    const std::vector<double> p = NumbersOf(list), q = NumbersOf(turn);
-    if ((p.size() == 2 || p.size() == 3) && q.size() == 4) {  // the panel writes w first
-      if (p.size() == 3) TakeHeight(line, p[2]);
-      const std::optional<double> yaw = YawOf({q[1], q[2], q[3], q[0]}, true, line);
-      return yaw ? Pose(line, p[0], p[1], yaw) : std::nullopt;
+    const YAML::Node beside = area_keys::OrientationIn(map).value;
+    std::optional<double> yaw;
+    bool is_wrong = false;
+    if (beside && beside.IsSequence() && NumbersOf(beside).size() == 4) {
+      yaw = YawOfPanel(NumbersOf(beside), line);
+      is_wrong = !yaw;
+    } else {
+      yaw = TurnOf(map, true, &is_wrong);
+      if (!yaw && !is_wrong) return IsPair(list, true) ? PoseOfPair(list) : PoseOfList(list);
     }
-    Fail(line, "wanted pose: [x, y, z] with orientation: [w, x, y, z]");
+    if (is_wrong) return std::nullopt;
+    const std::vector<double> p = NumbersOf(list);
+    if (p.size() != 2 && p.size() != 3) {
+      Fail(line, "wanted pose: [x, y, z] with orientation: [w, x, y, z]");
+      return std::nullopt;
+    }
+    if (p.size() == 3) TakeHeight(line, p[2]);
+    return Pose(line, p[0], p[1], yaw);
+  }
+
+  std::optional<double> YawOfPanel(const std::vector<double>& q, int line) {
+    const Quaternion turn = InOrder(q, order_.value_or(Order::kWFirst));
+    if (turn.length() == 0.0) return YawOf(turn, true, line);
+    turns_.push_back(q);
+    if (order_ == Order::kWLast) {
+      Note(line,
+           "orientations beside pose: [x, y, z] are taken in the order x, y, z, w, which suits all "
+           "of them best; Nav2's panel writes w first");
+    }
+    if (order_ || turn.up() > 0.5) return YawOf(turn, true, line);
+    Fail(line, fmt::format("orientation [{:g}, {:g}, {:g}, {:g}] turns the robot over in the order "
+                           "w, x, y, z, which is wanted, and in no other do all of the file turn "
+                           "it about z; write yaw [rad] instead",
+                           q[0], q[1], q[2], q[3]));
     return std::nullopt;
+  }
+
+  /// @pre IsPair(pair, ...).
+  std::optional<geometry::Pose2> PoseOfPair(const YAML::Node& pair) {
+    const int line = LineOf(pair);
+    const auto position = PositionOf(pair[0]);
+    bool is_wrong = false;
+    const auto yaw = OrientationOf({pair[1], 1.0, false}, &is_wrong);
+    if (!position || is_wrong) return std::nullopt;
+    Note(line, "two parts of a list are taken for the position and the orientation of one goal");
+    if (position->size() == 3) TakeHeight(line, (*position)[2]);
+    return Pose(line, (*position)[0], (*position)[1], yaw);
   }
 
   /// Two numbers, or three.
@@ -331,9 +547,10 @@ class AreaReader {
 
   /// @param[out] is_wrong  there is one, and it cannot be read; an error says so.
   std::optional<double> TurnOf(const YAML::Node& map, bool has_position, bool* is_wrong) {
-    if (const YAML::Node own = area_keys::OrientationIn(map)) return OrientationOf(own, is_wrong);
+    if (const auto own = area_keys::OrientationIn(map); own.value)
+      return OrientationOf(own, is_wrong);
     if (const area_keys::Angle angle = area_keys::AngleIn(map); angle.value)
-      return Read(angle.value, angle.factor, is_wrong);
+      return Read(angle.value, FactorOf(angle), is_wrong);
     const auto beside = area_keys::FlatQuaternionIn(map);
     if (beside[3]) return QuaternionOf(beside, true, is_wrong);
     const YAML::Node none(YAML::NodeType::Undefined);
@@ -342,12 +559,19 @@ class AreaReader {
     return std::nullopt;
   }
 
-  std::optional<double> OrientationOf(const YAML::Node& turn, bool* is_wrong) {
-    if (turn.IsScalar()) return Read(turn, 1.0, is_wrong);
+  /// To radians.
+  double FactorOf(const area_keys::Angle& angle) const {
+    return angle.says_unit ? angle.factor : angle.factor * unit_;
+  }
+
+  std::optional<double> OrientationOf(const area_keys::Angle& own, bool* is_wrong) {
+    const YAML::Node& turn = own.value;
+    const double factor = FactorOf(own);
+    if (turn.IsScalar()) return Read(turn, factor, is_wrong);
     if (turn.IsSequence()) {
       const std::vector<double> q = NumbersOf(turn);
-      if (q.size() == 3) return q[2];  // roll, pitch, yaw
-      if (q.size() == 1) return q[0];
+      if (q.size() == 3) return YawOfAngles(q, factor, LineOf(turn), is_wrong);
+      if (q.size() == 1) return factor * q[0];
       if (q.size() == 4) {
         const auto yaw = YawOf({q[0], q[1], q[2], q[3]}, true, LineOf(turn));
         *is_wrong |= !yaw;
@@ -355,7 +579,8 @@ class AreaReader {
       }
     } else if (turn.IsMap()) {
       if (const area_keys::Angle angle = area_keys::AngleIn(turn); angle.value)
-        return Read(angle.value, angle.factor, is_wrong);
+        return Read(angle.value, own.says_unit && !angle.says_unit ? factor : FactorOf(angle),
+                    is_wrong);
       const std::array<YAML::Node, 4> xyzw{Find(turn, {"x", "qx"}), Find(turn, {"y", "qy"}),
                                            Find(turn, {"z", "qz"}), Find(turn, {"w", "qw"})};
       if (xyzw[2] || xyzw[3]) return QuaternionOf(xyzw, true, is_wrong);
@@ -363,6 +588,18 @@ class AreaReader {
     *is_wrong = true;
     Fail(LineOf(turn),
          "has no orientation in numbers, wanted x, y, z, w of a quaternion, or a yaw");
+    return std::nullopt;
+  }
+
+  /// @param angles  roll, pitch and yaw.
+  std::optional<double> YawOfAngles(const std::vector<double>& angles, double factor, int line,
+                                    bool* is_wrong) {
+    if (std::cos(factor * angles[0]) * std::cos(factor * angles[1]) > 0.5)
+      return factor * angles[2];
+    *is_wrong = true;
+    Fail(line, fmt::format("roll {:g} and pitch {:g} turn the robot over; wanted [roll, pitch, "
+                           "yaw] [rad], as it stands on the floor",
+                           angles[0], angles[1]));
     return std::nullopt;
   }
 
@@ -421,10 +658,15 @@ class AreaReader {
   std::vector<NamedArea> areas_;
   std::vector<std::string> errors_;
   std::map<std::string, Places> noted_;
-  Passed passed_keys_, passed_parts_;
-  std::map<std::string, int> lines_;  // of names, in lower case
-  std::optional<double> height_;      // [m] of the goal that is being read
+  Passed passed_keys_, passed_parts_, beside_, unread_;
+  std::map<std::string, int> lines_;         // of names, in lower case
+  std::map<std::string, std::size_t> kept_;  // of names likewise, in areas_
+  std::optional<double> height_;             // [m] of the goal that is being read
+  std::optional<Order> order_{Order::kWFirst};
+  std::vector<std::vector<double>> turns_;  // that YawOfPanel() was asked for, as written
+  double unit_{1.0};                        // of angles, to radians
   int num_nodes_{0}, num_unnamed_{0};
+  int num_goals_{0}, num_numbers_{0};  // read well or not; in what is no goal
 };
 
 }  // namespace

@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <set>
+#include <sstream>
 #include <utility>
 
 #include "hires/base/text.h"
@@ -18,9 +20,13 @@ const Keys kPositions{"position"};
 const Keys kMaybePositions{"translation", "location", "coordinates", "coordinate", "coords",
                            "coord",       "pos",      "point",       "xyz",        "xy"};
 const Keys kHeights{"position", "translation", "point", "xyz"};
-const Keys kOrientations{"orientation", "rotation", "quaternion", "quat"};
-const Keys kRadians{"yaw", "theta", "th", "heading", "angle", "yaw_rad"};
-const Keys kDegrees{"yaw_deg", "theta_deg", "heading_deg", "angle_deg", "degrees"};
+const Keys kOrientations{"orientation", "rotation", "quaternion",  "quat",
+                         "rpy",         "euler",    "euler_angles"};
+const Keys kOrientationsInDegrees{"rpy_deg", "rpy_degrees", "euler_deg", "euler_degrees"};
+const Keys kAngles{"yaw", "theta", "th", "heading", "angle", "rz", "phi"};  // in the file's unit
+const Keys kUnitsOfAngles{"angle_unit", "angle_units", "yaw_unit", "yaw_units"};
+const Keys kUnitsOfMore{"units", "unit"};
+const Keys kSaysDegrees{"in_degrees", "use_degrees"};
 const Keys kPositionPrefixes{"", "p", "pos_", "position_", "position.", "pose_", "location_"};
 const Keys kQuaternionPrefixes{"q", "o", "q_", "quat_", "orientation_", "orientation."};
 const Keys kOfNoMatter{"pose",  "header", "stamp",       "seq",     "covariance", "roll",
@@ -29,12 +35,17 @@ const Keys kOfNoMatter{"pose",  "header", "stamp",       "seq",     "covariance"
 /// A key that ends with one of these holds no place; nor does one that begins so and ends with an
 /// axis or a unit.
 const std::set<std::string> kNoGoals{
-    "tolerance",  "tolerances", "size",       "sizes",   "color",      "colour",   "colors",
-    "colours",    "limit",      "limits",     "scale",   "covariance", "rgb",      "rgba",
-    "speed",      "speeds",     "velocity",   "polygon", "polygons",   "vertices", "verts",
-    "footprint",  "dimension",  "dimensions", "extent",  "extents",    "bounds",   "range",
-    "resolution", "gain",       "gains",      "weights", "threshold",  "inflation"};
+    "tolerance", "tolerances",  "size",           "sizes",     "color",       "colour",
+    "colors",    "colours",     "limit",          "limits",    "scale",       "covariance",
+    "rgb",       "rgba",        "speed",          "speeds",    "velocity",    "polygon",
+    "polygons",  "vertices",    "verts",          "footprint", "dimension",   "dimensions",
+    "extent",    "extents",     "bounds",         "range",     "resolution",  "gain",
+    "gains",     "weights",     "threshold",      "inflation", "transform",   "transforms",
+    "offset",    "offsets",     "corner",         "corners",   "velocities",  "vel",
+    "vels",      "translation", "transformation", "acc",       "acceleration"};
 const std::set<std::string> kUnits{"x", "y", "z", "xy", "xyz", "yaw", "rgb", "rgba", "m", "rad"};
+
+constexpr std::size_t kLongestNumbers = 500;  // letters of a goal that is written as text
 
 std::string KeyOf(const YAML::Node& key) {
   return key.IsScalar() ? base::ToLower(key.Scalar()) : "";
@@ -53,6 +64,15 @@ std::optional<std::string> PrefixOf(const std::string& key, char last, const Key
   return Has(prefixes, prefix) ? std::make_optional(prefix) : std::nullopt;
 }
 
+/// What blanks, commas and semicolons part; nothing of prose, which an alias may repeat.
+Keys WordsOf(const std::string& written) {
+  if (written.size() > kLongestNumbers) return {};
+  std::string text = written;
+  for (char& c : text) c = c == ',' || c == ';' ? ' ' : c;
+  std::istringstream in(text);
+  return {std::istream_iterator<std::string>(in), {}};
+}
+
 bool LooksLikePosition(const YAML::Node& node) {
   if (node.IsMap()) return FlatPositionIn(node)[0].IsDefined();
   const std::size_t size = node.IsSequence() ? NumbersOf(node).size() : 0;
@@ -62,8 +82,8 @@ bool LooksLikePosition(const YAML::Node& node) {
 std::string PositionKeyIn(const YAML::Node& map) {
   if (Find(map, kPositions)) return kPositions[0];
   if (!Find(map, kMaybePositions)) return "";
-  const bool is_one =
-      !NameIn(map).empty() || OrientationIn(map) || AngleIn(map).value || FlatQuaternionIn(map)[3];
+  const bool is_one = map.size() == 1 || !NameIn(map).empty() || OrientationIn(map).value ||
+                      AngleIn(map).value || FlatQuaternionIn(map)[3];
   for (const std::string& key : kMaybePositions) {
     const YAML::Node value = Find(map, {key});
     if (is_one && value && LooksLikePosition(value)) return key;
@@ -90,10 +110,54 @@ std::optional<std::string> StemOf(const YAML::Node& map, const std::string& key)
   return IsListOfNumbers(Find(map, {stem + "y"})) ? std::make_optional(stem) : std::nullopt;
 }
 
+Keys AnglesIn(const Keys& units) {
+  Keys keys;
+  for (const std::string& unit : units) {
+    for (const std::string& key : kAngles) keys.push_back(key + "_" + unit);
+  }
+  return keys;
+}
+
+const Keys& InRadians() {
+  static const Keys keys = AnglesIn({"rad", "radians"});
+  return keys;
+}
+
+const Keys& InDegrees() {
+  static const Keys keys = [] {
+    Keys all = AnglesIn({"deg", "degrees"});
+    all.push_back("degrees");
+    return all;
+  }();
+  return keys;
+}
+
+/// An angle under one of its keys, after this stem: "goals_".
+Angle AngleAfter(const std::string& stem, const YAML::Node& map) {
+  const auto find = [&](const Keys& keys) {
+    Keys whole;
+    for (const std::string& key : keys) whole.push_back(stem + key);
+    return Find(map, whole);
+  };
+  if (const YAML::Node angle = find(kAngles)) return {angle, 1.0, false};
+  if (const YAML::Node radians = find(InRadians())) return {radians, 1.0, true};
+  return {find(InDegrees()), M_PI / 180.0, true};
+}
+
+/// To radians, where it is a unit of an angle.
+std::optional<double> FactorOf(const YAML::Node& unit) {
+  if (!unit.IsDefined() || !unit.IsScalar()) return std::nullopt;
+  const std::string name = base::ToLower(unit.Scalar());
+  if (name == "rad" || name == "radian" || name == "radians") return 1.0;
+  if (name == "deg" || name == "degree" || name == "degrees") return M_PI / 180.0;
+  return std::nullopt;
+}
+
 Keys Known() {
   Keys known = kOfNoMatter;
   for (const Keys& more :
-       {kNames, kFrames, kPositions, kMaybePositions, kOrientations, kRadians, kDegrees}) {
+       {kNames, kFrames, kPositions, kMaybePositions, kOrientations, kOrientationsInDegrees,
+        kAngles, InRadians(), InDegrees(), kUnitsOfAngles, kUnitsOfMore, kSaysDegrees}) {
     known.insert(known.end(), more.begin(), more.end());
   }
   for (const char* end : {"x", "y", "z"}) {
@@ -120,15 +184,34 @@ YAML::Node Find(const YAML::Node& map, const Keys& keys) {
   return found;
 }
 
+std::optional<double> NumberIn(const YAML::Node& node) {
+  double number = 0.0;
+  const bool is_one = node.IsScalar() && YAML::convert<double>::decode(node, number);
+  return is_one && std::isfinite(number) ? std::make_optional(number) : std::nullopt;
+}
+
 std::vector<double> NumbersOf(const YAML::Node& list) {
   std::vector<double> numbers;
+  if (list.IsScalar()) {
+    const std::vector<std::string> words = WordsOf(list.Scalar());
+    for (const std::string& word : words) {
+      if (const auto number = NumberIn(YAML::Node(word))) numbers.push_back(*number);
+    }
+    return numbers.size() == words.size() ? numbers : std::vector<double>{};
+  }
   for (const YAML::Node& item : list) {
-    double number = 0.0;
-    if (!item.IsScalar() || !YAML::convert<double>::decode(item, number) || !std::isfinite(number))
-      return {};
-    numbers.push_back(number);
+    const auto number = NumberIn(item);
+    if (!number) return {};
+    numbers.push_back(*number);
   }
   return numbers;
+}
+
+int CountNumbers(const YAML::Node& scalar) {
+  const std::vector<std::string> words = WordsOf(scalar.Scalar());
+  return static_cast<int>(std::count_if(words.begin(), words.end(), [](const std::string& word) {
+    return NumberIn(YAML::Node(word));
+  }));
 }
 
 std::string NameIn(const YAML::Node& map) {
@@ -172,11 +255,26 @@ YAML::Node PositionIn(const YAML::Node& map) {
 
 bool HasHeight(const YAML::Node& map) { return Has(kHeights, PositionKeyIn(map)); }
 
-YAML::Node OrientationIn(const YAML::Node& map) { return Find(map, kOrientations); }
+Angle OrientationIn(const YAML::Node& map) {
+  if (const YAML::Node turn = Find(map, kOrientations)) return {turn, 1.0, false};
+  return {Find(map, kOrientationsInDegrees), M_PI / 180.0, true};
+}
 
-Angle AngleIn(const YAML::Node& map) {
-  if (const YAML::Node radians = Find(map, kRadians)) return {radians, 1.0};
-  return {Find(map, kDegrees), M_PI / 180.0};
+Angle AngleIn(const YAML::Node& map) { return AngleAfter("", map); }
+
+Unit UnitIn(const YAML::Node& map) {
+  for (const std::string& key : kSaysDegrees) {
+    bool is_so = false;
+    const YAML::Node value = Find(map, {key});
+    if (value && YAML::convert<bool>::decode(value, is_so) && is_so)
+      return {value, M_PI / 180.0, true};
+  }
+  if (const YAML::Node own = Find(map, kUnitsOfAngles)) return {own, FactorOf(own), true};
+  const YAML::Node more = Find(map, kUnitsOfMore);
+  const YAML::Node unit =
+      more && more.IsMap() ? Find(more, {"angle", "angles", "yaw", "rotation"}) : more;
+  const auto factor = FactorOf(unit);  // else it is of lengths
+  return {factor ? unit : Undefined(), factor, false};
 }
 
 bool IsNoGoal(const std::string& key) {
@@ -184,6 +282,8 @@ bool IsNoGoal(const std::string& key) {
   const std::size_t first = lower.find_first_of("_-. "), last = lower.find_last_of("_-. ");
   if (first == std::string::npos) return kNoGoals.count(lower) > 0;
   const std::string begin = lower.substr(0, first), end = lower.substr(last + 1);
+  const bool is_setting = begin == "max" || begin == "min" || begin == "vel";
+  if (is_setting && lower[first] == '_') return true;  // "Max Room" is a room
   return kNoGoals.count(end) > 0 || (kNoGoals.count(begin) > 0 && kUnits.count(end) > 0);
 }
 
@@ -204,17 +304,14 @@ std::vector<ParallelLists> ParallelListsIn(const YAML::Node& map) {
         IsListOfNumbers(entry.second) ? StemOf(map, KeyOf(entry.first)) : std::nullopt;
     if (!stem) continue;
     ParallelLists lists{entry.first.Scalar(), entry.second, Find(map, {*stem + "y"}), {}, {}};
-    Keys radians, degrees;
-    for (const std::string& key : kRadians) radians.push_back(*stem + key);
-    for (const std::string& key : kDegrees) degrees.push_back(*stem + key);
-    lists.yaw.value.reset(Find(map, radians));
-    if (!lists.yaw.value) {
-      lists.yaw.value.reset(Find(map, degrees));
-      lists.yaw.factor = M_PI / 180.0;
-    }
+    const Angle yaw = AngleAfter(*stem, map);
+    lists.yaw.value.reset(yaw.value);
+    lists.yaw.factor = yaw.factor;
+    lists.yaw.says_unit = yaw.says_unit;
     lists.keys = {*stem + "x", *stem + "y"};
-    lists.keys.insert(lists.keys.end(), radians.begin(), radians.end());
-    lists.keys.insert(lists.keys.end(), degrees.begin(), degrees.end());
+    for (const Keys& angles : {kAngles, InRadians(), InDegrees()}) {
+      for (const std::string& key : angles) lists.keys.push_back(*stem + key);
+    }
     all.push_back(lists);
   }
   return all;

@@ -15,14 +15,22 @@ namespace hires::imagination::area_keys {
 /// Of an angle, and its unit.
 struct Angle {
   YAML::Node value{YAML::NodeType::Undefined};
-  double factor{1.0};  ///< to radians
+  double factor{1.0};     ///< to radians
+  bool says_unit{false};  ///< the key does; else UnitIn() may say another
 };
 
 /// The value of the first of these keys, in lower case, that a map has.
 YAML::Node Find(const YAML::Node& map, const std::vector<std::string>& keys);
 
-/// The numbers of a list, or nothing where it has anything else.
+/// A finite number, or nothing.
+std::optional<double> NumberIn(const YAML::Node& node);
+
+/// The numbers of a list or of a text ("1 2 0.5", or with commas), or nothing where it has anything
+/// else.
 std::vector<double> NumbersOf(const YAML::Node& list);
+
+/// How many of the words of a text are numbers.
+int CountNumbers(const YAML::Node& scalar);
 
 /// Name, label, room and the like that stand beside a pose; or empty.
 std::string NameIn(const YAML::Node& map);
@@ -44,10 +52,18 @@ YAML::Node PositionIn(const YAML::Node& map);
 /// Whether the third number of a list under that key is surely a height, and no yaw.
 bool HasHeight(const YAML::Node& map);
 
-/// Orientation under a key of its own, in whatever form.
-YAML::Node OrientationIn(const YAML::Node& map);
+/// Orientation under a key of its own, in whatever form; the unit is that of its angles.
+Angle OrientationIn(const YAML::Node& map);
 
 Angle AngleIn(const YAML::Node& map);
+
+/// In which unit the angles of a map and of all in it are.
+struct Unit {
+  YAML::Node said{YAML::NodeType::Undefined};  ///< where; undefined: nowhere
+  std::optional<double> factor;                ///< to radians; nothing: it is none of an angle
+  bool is_of_angles{true};                     ///< its key says so
+};
+Unit UnitIn(const YAML::Node& map);
 
 /// Whether a key says that what it holds is no place: xy_tolerance, color, speed_limits, size.
 bool IsNoGoal(const std::string& key);

@@ -88,6 +88,58 @@ TEST_F(AreaFileTest, WaypointsOfNav2sPanelHaveWFirst) {
   ExpectArea(areas[0], "waypoint0", 1.0, 2.0, 1.0);
 }
 
+/// Goals as Nav2's panel has them, of these yaws, with w first or last.
+std::string OfPanel(const std::vector<double>& yaws, bool is_w_first) {
+  std::string yaml;
+  for (std::size_t i = 0; i < yaws.size(); ++i) {
+    const double z = std::sin(yaws[i] / 2), w = std::cos(yaws[i] / 2);
+    yaml += fmt::format("p{}: {{pose: [{}, 2.0, 0.0], orientation: ", i, i);
+    yaml += is_w_first ? fmt::format("[{}, 0, 0, {}]}}\n", w, z)
+                       : fmt::format("[0, 0, {}, {}]}}\n", z, w);
+  }
+  return yaml;
+}
+
+TEST_F(AreaFileTest, TheOrderOfPanelsNumbersIsTheOneThatTurnsAboutZ) {
+  for (int seed = 0; seed < Rounds(60); ++seed) {
+    base::Rng rng = base::Rng(13).Fork(seed);
+    std::vector<double> yaws;
+    for (int i = 1 + rng.Index(4); i > 0; --i) {
+      yaws.push_back(rng.Index(3) == 0 ? rng.Uniform(-0.05, 0.05) : rng.Uniform(-3.1, 3.1));
+    }
+    if (seed % 4 == 0) yaws = {0.0, 0.0};  // x, y, z, w of which say no more
+    for (const bool is_w_first : {true, false}) {
+      const LogCatcher log(base::LogLevel::kWarn);
+      const std::string yaml = OfPanel(yaws, is_w_first);
+      const auto areas = Read(yaml);
+      ASSERT_EQ(areas.size(), yaws.size()) << yaml;
+      for (std::size_t i = 0; i < yaws.size(); ++i)
+        ExpectArea(areas[i], fmt::format("p{}", i), static_cast<double>(i), 2, yaws[i]);
+      if (is_w_first) {
+        EXPECT_THAT(log.lines, IsEmpty()) << yaml;
+      } else {
+        EXPECT_THAT(log.lines, ElementsAre(HasSubstr("in the order x, y, z, w"))) << yaml;
+      }
+    }
+  }
+}
+
+TEST_F(AreaFileTest, PanelsNumbersInNoOneOrderAreRefusedAsWritten) {
+  EXPECT_THAT(ErrorOf("a: {pose: [1, 2, 0], orientation: [0.7071, 0, 0, 0.7071]}\n"
+                      "b: {pose: [1, 3, 0], orientation: [0, 0, 0.6, 0.8]}\n"),
+              AllOf(HasSubstr("goals.yaml:2: orientation [0, 0, 0.6, 0.8]"),
+                    HasSubstr("w, x, y, z, which is wanted")));
+  EXPECT_THAT(ErrorOf("a: {pose: [1, 2, 0], orientation: [0.1, 0.9, 0.3, 0.2]}\n"),
+              HasSubstr("orientation [0.1, 0.9, 0.3, 0.2]"));
+}
+
+TEST_F(AreaFileTest, WhatIsBesideAListUnderPoseIsItsTurn) {
+  for (const char* turn : {"yaw: 0.5", "rpy: [0, 0, 0.5]", "euler: {roll: 0, pitch: 0, yaw: 0.5}",
+                           "yaw_degrees: 28.64788975654116"}) {
+    ExpectArea(Read(fmt::format("a: {{pose: [1, 2, 0], {}}}\n", turn)).at(0), "a", 1, 2, 0.5);
+  }
+}
+
 TEST_F(AreaFileTest, SeveralDocumentsAreWhatRostopicEchoPrints) {
   const std::string one =
       "header:\n  seq: 1\n  frame_id: \"map\"\npose:\n  position: {x: 1, y: 2, z: 0}\n"
@@ -257,6 +309,174 @@ TEST_F(AreaFileTest, KeysOfAGoalThatSayNothingAreNamed) {
               ElementsAre(HasSubstr("have a yaw of 0"),
                           AllOf(HasSubstr("goals.yaml:1: passes over 'direction', 'turn'"),
                                 HasSubstr("yaw [rad]"))));
+}
+
+TEST_F(AreaFileTest, NumbersOfWhichNoGoalComesAreNamed) {
+  const struct {
+    const char *part, *told;
+  } kinds[] = {{"lab: [1.0, 2.0, pi/2]\n", "'lab (line 2)'"},
+               {"lab: [1.0, 2.0, 1.57rad]\n", "'lab (line 2)'"},
+               {"lab: [1.0, 2.0, ~]\n", "'lab (line 2)'"},
+               {"lab: [3.0, 2.0, .nan]\n", "'lab (line 2)'"},
+               {"lab: [{x: 1.0}, {y: 2.0}, {yaw: 1.57}]\n", "'lab (line 2)'"},
+               {"lab: {x: 1.0, yy: 2.0, yaw: 0.0}\n", "'lab (line 2)'"},
+               {"lab: 3.0 1.0\n", "'lab (line 2)'"},
+               {"lab:\n  more: {deep: [1, 2, pi]}\n", "'lab (line 2)'"},
+               {"lab:\n- [9, 9, 0]\n- [1, 2, pi]\n", "'an item (line 4)'"}};
+  for (const auto& kind : kinds) {
+    const LogCatcher log(base::LogLevel::kWarn);
+    const auto areas = Read(std::string("ok: [4, 2, 0]\n") + kind.part);
+    ASSERT_GE(areas.size(), 1u);
+    ExpectArea(areas[0], "ok", 4, 2, 0);
+    EXPECT_THAT(log.lines,
+                ElementsAre(AllOf(HasSubstr(kind.told), HasSubstr("no goal could be made"))))
+        << kind.part;
+  }
+  const LogCatcher log(base::LogLevel::kWarn);
+  Read("ok: [4, 2, 0]\nrate: 10\nspeed: 0.5 0.6\nnames: [a, b]\nwho: {age: 3}\n");
+  EXPECT_THAT(log.lines, IsEmpty()) << "one number is no goal that was missed";
+}
+
+TEST_F(AreaFileTest, ListsWithNamesAndTextsAreGoals) {
+  const auto areas = Read(
+      "stations:\n- [dock, 1, 2, 0.5]\n- [shelf, [3, 4, 1.5]]\n- [bench, {x: 5, y: 6, yaw: 1}]\n"
+      "lab: \"7.0 8.0 0.25\"\nhall: 9, 10, -1\nbar: [11, 12, 0, 0, 0, 0, 1]\n"
+      "den: {name: Den, pose: 13 14 0.5}\n");
+  ASSERT_EQ(areas.size(), 7u);
+  ExpectArea(areas[0], "dock", 1, 2, 0.5);
+  ExpectArea(areas[1], "shelf", 3, 4, 1.5);
+  ExpectArea(areas[2], "bench", 5, 6, 1);
+  ExpectArea(areas[3], "lab", 7, 8, 0.25);
+  ExpectArea(areas[4], "hall", 9, 10, -1);
+  ExpectArea(areas[5], "bar", 11, 12, 0);
+  ExpectArea(areas[6], "Den", 13, 14, 0.5);
+}
+
+TEST_F(AreaFileTest, WhatAGoalIsWrappedInIsNoName) {
+  for (const char* wrapper : {"goal", "waypoint", "target", "goal_pose", "target_pose", "node"}) {
+    for (const char* pose : {"[1, 2, 0.5]", "{x: 1, y: 2, theta: 0.5}", "1 2 0.5"}) {
+      const std::string yaml = fmt::format(
+          "rooms:\n- {{name: kitchen, {0}: {1}}}\n- {{{0}: {1}}}\n- {{{0}: {1}}}\n", wrapper, pose);
+      const auto areas = Read(yaml);
+      ASSERT_EQ(areas.size(), 3u) << yaml;
+      ExpectArea(areas[0], "kitchen", 1, 2, 0.5);
+      ExpectArea(areas[1], "goal1", 1, 2, 0.5);
+      ExpectArea(areas[2], "goal2", 1, 2, 0.5);
+    }
+  }
+  for (const char* key : {"point", "position", "location", "coords", "xy", "translation"}) {
+    const auto areas =
+        Read(fmt::format("goals:\n- {0}: {{x: 1, y: 2}}\n- {0}: {{x: 3, y: 4}}\n"
+                         "hall: {{{0}: {{x: 5, y: 6}}}}\n",
+                         key));
+    ASSERT_EQ(areas.size(), 3u) << key;
+    ExpectArea(areas[1], "goal2", 3, 4, 0);
+    ExpectArea(areas[2], "hall", 5, 6, 0);
+  }
+  const auto areas = Read("goal: {x: 1, y: 2, yaw: 0}\nhome: {x: 3, y: 4, yaw: 0}\n");
+  ASSERT_EQ(areas.size(), 2u) << "beside others, it is a name";
+  ExpectArea(areas[0], "goal", 1, 2, 0);
+  ExpectArea(areas[1], "home", 3, 4, 0);
+}
+
+TEST_F(AreaFileTest, WhatStandsBesideTheOnePlaceOfAGoalIsNamed) {
+  const LogCatcher log(base::LogLevel::kWarn);
+  const auto areas =
+      Read("rooms:\n- {name: kitchen, goal: [1, 2, 0], corners: [[0, 0], [4, 0]], door: [4, 2]}\n");
+  ASSERT_EQ(areas.size(), 1u);
+  ExpectArea(areas[0], "kitchen", 1, 2, 0);
+  EXPECT_THAT(log.lines, ElementsAre(AllOf(HasSubstr("'corners'"), HasSubstr("no goals")),
+                                     AllOf(HasSubstr("'door'"), HasSubstr("one place"))));
+}
+
+TEST_F(AreaFileTest, SettingsOfRobotsAreNoGoals) {
+  const LogCatcher log(base::LogLevel::kWarn);
+  const auto areas = Read(
+      "robot: {max_vel: [0.5, 1], cmd_vel: [0, 1], wheel_offsets: [0.1, 0.2], max_turn: [1, 2],\n"
+      "  vel_range_x: [0, 1], corners: [[1, 1]], transform: [0, 0, 1], offset: {x: 1, y: 2}}\n"
+      "transformation: {translation: {x: 0, y: 0, z: 0}, rotation: {w: 1}}\n"
+      "kitchen: [1, 2, 0.5]\nMax Room: [3, 4, 0.5]\n");
+  ASSERT_EQ(areas.size(), 2u);
+  ExpectArea(areas[0], "kitchen", 1, 2, 0.5);
+  ExpectArea(areas[1], "Max Room", 3, 4, 0.5);
+  EXPECT_THAT(log.lines, ElementsAre(HasSubstr("no goals")));
+}
+
+TEST_F(AreaFileTest, APositionAndItsTurnAreOneGoal) {
+  const double z = std::sin(0.25), w = std::cos(0.25);
+  for (const std::string& yaml :
+       {std::string("kitchen: [[1, 2, 0], [0, 0, 0.5]]\n"),
+        fmt::format("kitchen:\n- [1, 2, 0]\n- [0, 0, {}, {}]\n", z, w),
+        fmt::format("kitchen:\n- {{x: 1, y: 2, z: 0}}\n- {{x: 0, y: 0, z: {}, w: {}}}\n", z, w),
+        fmt::format("kitchen: {{pose: [[1, 2, 0], [0, 0, {}, {}]]}}\n", z, w)}) {
+    const LogCatcher log(base::LogLevel::kWarn);
+    const auto areas = Read(yaml);
+    ASSERT_EQ(areas.size(), 1u) << yaml;
+    ExpectArea(areas[0], "kitchen", 1, 2, 0.5);
+    EXPECT_THAT(log.lines, ElementsAre(HasSubstr("of one goal"))) << yaml;
+  }
+  EXPECT_EQ(Read("goals: [[1, 2, 0], [0, 0, 0.5]]\n").size(), 2u);
+  EXPECT_EQ(Read("kitchen: [[1, 2, 0], [0, 1, 0.5]]\n").size(), 2u);
+}
+
+TEST_F(AreaFileTest, AnglesAreReadInTheUnitThatTheirKeyOrTheFileSays) {
+  for (const char* turn :
+       {"yaw: {0}", "rz: {0}", "phi: {0}", "theta: {0}", "yaw_rad: {0}", "rpy: [0, 0, {0}]",
+        "euler: {{roll: 0, pitch: 0, yaw: {0}}}", "euler_angles: [0, 0, {0}]", "yaw_deg: {1}",
+        "yaw_degrees: {1}", "theta_degrees: {1}", "rz_deg: {1}", "rpy_deg: [0, 0, {1}]",
+        "euler_degrees: {{roll: 0, pitch: 0, yaw: {1}}}", "orientation: {{yaw: {0}}}"}) {
+    for (const double yaw : {-3.0, -0.5, 0.1, 1.5}) {
+      const std::string text = fmt::format(fmt::runtime(turn), yaw, yaw * 180.0 / M_PI);
+      for (const std::string& goal :
+           {"{x: 1, y: 2, " + text + "}", "{position: [1, 2, 0], " + text + "}"}) {
+        ExpectArea(Read("a: " + goal + "\n").at(0), "a", 1, 2, yaw);
+        const bool says_none =
+            text.find("_deg") == std::string::npos && text.find("_rad") == std::string::npos;
+        if (!says_none)
+          ExpectArea(Read("angle_unit: deg\na: " + goal + "\n").at(0), "a", 1, 2, yaw);
+      }
+    }
+  }
+  for (const char* unit : {"angle_unit: degrees", "angle_unit: deg", "yaw_unit: Degrees",
+                           "units: deg", "units: {angle: deg, length: m}", "in_degrees: true"}) {
+    for (const char* goal : {"{x: 1, y: 2, yaw: 90}", "[1, 2, 90]", "{position: [1, 2], yaw: 90}",
+                             "{x: 1, y: 2, rpy: [0, 0, 90]}", "{x: 1, y: 2, yaw_deg: 90}"}) {
+      const auto areas = Read(fmt::format("{0}\ngoals: {{a: {1}}}\n", unit, goal));
+      ASSERT_EQ(areas.size(), 1u) << unit << goal;
+      ExpectArea(areas[0], "a", 1, 2, M_PI / 2.0);
+    }
+    const auto areas =
+        Read(fmt::format("a: {{x: 1, y: 2, yaw: 5, {}}}\nb: {{x: 1, y: 2, yaw: 5}}\n", unit));
+    ASSERT_EQ(areas.size(), 2u) << unit;
+    ExpectArea(areas[0], "a", 1, 2, 5.0 * M_PI / 180.0);
+    ExpectArea(areas[1], "b", 1, 2, 5.0);
+  }
+  ExpectArea(Read("units: m\na: [1, 2, 0.5]\n").at(0), "a", 1, 2, 0.5);
+  EXPECT_THAT(ErrorOf("angle_unit: gon\na: [1, 2, 0.5]\n"), HasSubstr("'gon' is no unit"));
+  EXPECT_THAT(ErrorOf("about: {angle_unit: deg}\na: [1, 2, 0.5]\n"),
+              AllOf(HasSubstr("goals.yaml:1:"), HasSubstr("degrees where no goal is")));
+  const LogCatcher log(base::LogLevel::kWarn);
+  ExpectArea(Read("lidar: {fov: 270, units: deg}\na: [1, 2, 0.5]\n").at(0), "a", 1, 2, 0.5);
+  EXPECT_THAT(log.lines, ElementsAre(HasSubstr("degrees where no goal is")));
+  EXPECT_THAT(ErrorOf("a: {x: 1, y: 2, rpy: [3.14, 0, 0]}\n"), HasSubstr("turn the robot over"));
+}
+
+TEST_F(AreaFileTest, ARoundMayComeBackToItsGoals) {
+  const LogCatcher log(base::LogLevel::kWarn);
+  const auto areas = Read(
+      "- {name: home, x: 0, y: 0, yaw: 0}\n- {name: shelf, x: 2, y: 1, yaw: 1.57}\n"
+      "- {name: Home, x: 0, y: 0, yaw: 0}\n- {name: home, x: 0, y: 0, yaw: 0}\n");
+  ASSERT_EQ(areas.size(), 2u);
+  ExpectArea(areas[0], "home", 0, 0, 0);
+  ExpectArea(areas[1], "shelf", 2, 1, 1.57);
+  EXPECT_THAT(log.lines, ElementsAre(AllOf(HasSubstr("goals.yaml:3:"), HasSubstr("kept once (2"))));
+  for (const char* other :
+       {"x: 0.1, y: 0, yaw: 0", "x: 0, y: 0, yaw: 0.1", "x: 0, y: 0, z: 3, yaw: 0"}) {
+    EXPECT_THAT(
+        ErrorOf(fmt::format("- {{name: home, x: 0, y: 0, yaw: 0}}\n- {{name: home, {}}}\n", other)),
+        HasSubstr("'home' is there twice"))
+        << other;
+  }
 }
 
 TEST_F(AreaFileTest, ListsSideBySideAreGoals) {
