@@ -32,8 +32,8 @@ bool AreSame(const std::string& a, const std::string& b) {
   namespace fs = std::filesystem;
   std::error_code none_there;
   if (fs::exists(a, none_there) && !fs::is_regular_file(a, none_there)) return false;
-  return fs::equivalent(a, b, none_there) ||
-         fs::weakly_canonical(a, none_there) == fs::weakly_canonical(b, none_there);
+  return fs::equivalent(a, b, none_there) || fs::weakly_canonical(fs::absolute(a), none_there) ==
+                                                 fs::weakly_canonical(fs::absolute(b), none_there);
 }
 
 }  // namespace

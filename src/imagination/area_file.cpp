@@ -98,8 +98,11 @@ bool IsPair(const YAML::Node& node, bool is_named) {
 /// Of one goal, by its name: "goals" and "patrol" hold several.
 bool NamesOne(const std::string& name) {
   const std::string lower = base::ToLower(name);
-  return !lower.empty() && lower.back() != 's' && lower != "patrol" && lower != "route" &&
-         lower != "path" && lower != "tour";
+  if (lower.empty() || lower.back() == 's') return false;
+  constexpr const char* kOfSeveral[] = {"list",    "patrol",   "route", "path", "tour",
+                                        "mission", "sequence", "loop",  "round"};
+  return std::none_of(std::begin(kOfSeveral), std::end(kOfSeveral),
+                      [&](const char* word) { return lower.find(word) != std::string::npos; });
 }
 
 bool LooksLikePose(const YAML::Node& node) {
@@ -501,7 +504,8 @@ class AreaReader {
     if (order_ == Order::kWLast) {
       Note(line,
            "orientations beside pose: [x, y, z] are taken in the order x, y, z, w, which suits all "
-           "of them best; Nav2's panel writes w first");
+           "of them as well or better; Nav2's panel writes w first: write a yaw [rad] if that is "
+           "meant");
     }
     if (order_ || turn.up() > 0.5) return YawOf(turn, true, line);
     Fail(line, fmt::format("orientation [{:g}, {:g}, {:g}, {:g}] turns the robot over in the order "

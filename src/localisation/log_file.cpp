@@ -266,11 +266,14 @@ void CarmenReader::FindForm() {
     num_odometry += is_odometry ? 1 : 0;
     num_short += is_short ? 1 : 0;
   }
-  if (num_told > 1 && num_timeless == num_told) {
+  const auto are_nearly_all = [](int count, int all) {
+    return all > 1 && all - count <= kMostOddShare * all;
+  };
+  if (are_nearly_all(num_timeless, num_told)) {
     words_of_time_ = 0;
     Warn("its lines have no times (ipc_timestamp hostname logger_timestamp)");
   }
-  if (num_odometry > 1 && num_short == num_odometry) words_of_odometry_ = kWordsOfOdometry - 1;
+  if (are_nearly_all(num_short, num_odometry)) words_of_odometry_ = kWordsOfOdometry - 1;
 }
 
 void CarmenReader::TakeLine(std::string_view line) {

@@ -179,7 +179,9 @@ MapEvidence EvidenceOf(const MapSketch& sketch, const OccupancyGrid& grid) {
     const robot::ScanReading& first = sketch.scans.front()->reading;
     const std::size_t num_steps = first.ranges.empty() ? 0 : first.ranges.size() - 1;
     evidence.field_of_view = std::abs(first.angle_increment) * static_cast<double>(num_steps);
-    evidence.is_field_assumed = IsFieldAssumed(evidence.field_of_view, num_steps);
+    // FLASER's alone: what a message or another line says is no such number to the last bit.
+    evidence.is_field_assumed = first.angle_min == -geometry::kPi / 2.0 &&
+                                IsFieldAssumed(evidence.field_of_view, num_steps);
   }
   evidence.returns = sketch.judge_returns();
   const double finer = grid.resolution / kJudgedCell;

@@ -14,6 +14,7 @@ using geometry::Pose2;
 constexpr double kStretch = 0.5;           // [m], [rad]
 constexpr double kTurnsTold = 1.0;         // [rad^2] of stretches that tell whether turns are alike
 constexpr double kWayOfStretch = 0.25;     // [m] that makes it one of a way
+constexpr double kLeastOfStretch = 0.1;    // of its scans, with which it disagrees
 constexpr double kHasMoved = 0.001;        // [m]
 constexpr std::size_t kFewStretches = 10;  // whose ways tell nothing
 
@@ -28,7 +29,8 @@ void MotionComparison::Add(const Pose2& by_laser, const Pose2& by_odometry, bool
   stretch_.by_odometry = stretch_.by_odometry * by_odometry;
   stretch_.by_laser.yaw = geometry::WrapToPi(stretch_.by_laser.yaw);
   stretch_.by_odometry.yaw = geometry::WrapToPi(stretch_.by_odometry.yaw);
-  stretch_.disagree = stretch_.disagree || disagree;
+  ++stretch_.num_scans;
+  if (disagree) ++stretch_.num_disagree;
   if (!IsStretch(stretch_.by_laser) && !IsStretch(stretch_.by_odometry)) return;
   TakeStretch();
   stretch_ = {};
@@ -36,7 +38,8 @@ void MotionComparison::Add(const Pose2& by_laser, const Pose2& by_odometry, bool
 
 void MotionComparison::TakeStretch() {
   ++num_stretches_;
-  if (stretch_.disagree) ++num_disagreed_;
+  // One of many scans may be of people who walk by.
+  if (stretch_.num_disagree >= kLeastOfStretch * stretch_.num_scans) ++num_disagreed_;
   turned_ += stretch_.by_odometry.yaw * stretch_.by_odometry.yaw;
   turned_alike_ += stretch_.by_odometry.yaw * stretch_.by_laser.yaw;
   const double way = stretch_.by_laser.position().norm();

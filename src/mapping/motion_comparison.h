@@ -25,12 +25,12 @@ class MotionComparison {
   double ways_alike() const;
 
   int num_stretches() const { return num_stretches_; }
-  int num_disagreed() const { return num_disagreed_; }  ///< stretches with a scan that does
+  int num_disagreed() const { return num_disagreed_; }  ///< with a tenth of their scans
 
  private:
   struct Stretch {
     geometry::Pose2 by_laser, by_odometry;
-    bool disagree{false};
+    int num_scans{0}, num_disagree{0};
   };
 
   void TakeStretch();

@@ -7,7 +7,7 @@ namespace {
 
 constexpr double kMaxBehind = 0.1;   // of the points
 constexpr double kMaxAside = 0.02;   // of the points; cameras measure none of them
-constexpr float kTanAside = 1.732F;  // of 60 degrees, off the axis along which the camera looks
+constexpr float kTanAside = 2.145F;  // of 65 degrees, off the axis along which the camera looks
 constexpr float kAbsurd = 1e4F;      // [m] farther than anything that measures distances sees
 
 /// How drivers write that nothing was measured: NaN, a huge number of either sign, or the camera's
@@ -39,7 +39,7 @@ std::string TakeOnlyAhead(PointCloud* cloud) {
   const std::string why = WrongFrame(num_behind, kMaxBehind, num_measured, "behind the camera");
   if (!why.empty()) return why;
   return WrongFrame(num_aside, kMaxAside, num_measured,
-                    "more than 60 degrees off the z axis, along which the camera looks");
+                    "more than 65 degrees off the z axis, along which the camera looks");
 }
 
 }  // namespace hires::perception

@@ -328,7 +328,10 @@ RobotLog DriveBuilder::Take() {
   };
   if (num_late_ > 0) warn(fmt::format("{} readings came late; put in order", num_late_));
   for (const auto& [what, count] : left_out_) warn(fmt::format("left out {} {}", count, what));
-  if (!maximum.empty()) warn(fmt::format("{}; range_max of the scans says {:g}", maximum, said));
+  if (!maximum.empty()) {
+    warn(maximum + (said > 0.0 ? fmt::format("; range_max of the scans says {:g}", said)
+                               : "; range_max of the scans tells none"));
+  }
   return std::move(log_);
 }
 

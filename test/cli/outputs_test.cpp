@@ -197,6 +197,17 @@ TEST_F(OutputsTest, APictureBesideAnOutputIsAnOutput) {
               HasSubstr("name two files"));
 }
 
+TEST_F(OutputsTest, TwoOutputsMayNotBeOneFileThatIsNotThereYet) {
+  const std::string absolute = std::filesystem::absolute("no_such_out").string();
+  for (const std::string& other : {std::string("./no_such_out"), absolute}) {
+    EXPECT_THAT(ConfigErrorOf([&] {
+                  CheckOutputs({{"--json", "no_such_out"}, {"--csv", other}}, {});
+                }),
+                HasSubstr("name two files"))
+        << other;
+  }
+}
+
 TEST_F(OutputsTest, OneFileIsOneUnderAnyName) {
   std::filesystem::create_symlink(Path("log.yaml"), Path("link"));
   std::filesystem::create_hard_link(Path("log.yaml"), Path("other"));

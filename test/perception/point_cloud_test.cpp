@@ -52,7 +52,7 @@ TEST(TakeOnlyAheadTest, FramesWithZUpAreNone) {
     }
     cloud.width = static_cast<int>(cloud.points.size());
     EXPECT_THAT(TakeOnlyAhead(&cloud),
-                testing::HasSubstr("more than 60 degrees off the z axis, along which the camera "
+                testing::HasSubstr("more than 65 degrees off the z axis, along which the camera "
                                    "looks; wanted an optical frame (x right, y down, z forward)"))
         << ahead;
   }
@@ -61,16 +61,16 @@ TEST(TakeOnlyAheadTest, FramesWithZUpAreNone) {
 TEST(TakeOnlyAheadTest, AWideCameraAndAFewPointsAsideAreNoOtherFrame) {
   PointCloud cloud;
   for (int i = 0; i < 1000; ++i) {
-    const float angle = 0.00104F * static_cast<float>(i);  // up to 59.5 degrees
+    const float angle = 0.00111F * static_cast<float>(i);  // up to 63.5 degrees
     const float sign = i % 2 == 0 ? 1.0F : -1.0F;
     cloud.points.emplace_back(sign * std::tan(angle), 0.0F, 1.0F);
   }
   cloud.width = 1000;
-  for (int i = 0; i < 20; ++i) cloud.points[50 * i] = {0.0F, 2.0F, 1.0F};
+  for (int i = 0; i < 20; ++i) cloud.points[50 * i] = {0.0F, 3.0F, 1.0F};
   EXPECT_EQ(TakeOnlyAhead(&cloud), "");
   EXPECT_TRUE(IsMeasured(cloud.points[50])) << "what is ahead stays";
-  cloud.points[1] = {0.0F, -2.0F, 1.0F};
-  EXPECT_THAT(TakeOnlyAhead(&cloud), testing::HasSubstr("21 of 1000 points lie more than 60"));
+  cloud.points[1] = {0.0F, -3.0F, 1.0F};
+  EXPECT_THAT(TakeOnlyAhead(&cloud), testing::HasSubstr("21 of 1000 points lie more than 65"));
 }
 
 }  // namespace

@@ -42,7 +42,7 @@ struct MapCounts {
   double ways_alike{1.0};   ///< [m/m] ways likewise, in the median: 3.28 where ranges are in feet;
                             ///< 1 also on less than 5 m
   int num_stretches{0};     ///< of 0.5 m or 0.5 rad, on which laser and odometry were compared
-  int num_disagreed{0};     ///< those with a scan of num_searched
+  int num_disagreed{0};     ///< those with a tenth of scans of num_searched
 };
 
 /// Whether places to which the robot came back look as before: within 2 m and 1 rad of where it

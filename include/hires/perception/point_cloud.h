@@ -20,7 +20,7 @@ inline bool IsMeasured(const Eigen::Vector3f& p_C) { return p_C.allFinite(); }
 /// Takes for not measured what no camera measures: points in itself (how some drivers write that
 /// nothing was measured) and behind it.
 /// @return why the cloud can be of no optical frame: more than a tenth of its points lie behind, or
-///         more than a fiftieth ahead but over 60 degrees off the z axis; empty: it may be.
+///         more than a fiftieth ahead but over 65 degrees off the z axis; empty: it may be.
 std::string TakeOnlyAhead(PointCloud* cloud);
 
 }  // namespace hires::perception

@@ -92,6 +92,7 @@ struct PlanResult {
 /// step that matches a fact (imagined_failure action arguments...) of its state is refused.
 /// @throws ConfigError where domain and problem do not fit (unknown task or function that is
 /// reached, wrong number of arguments, a function that fails), naming file and line.
+/// In a file that computes by (call ...) alone, as JSHOP2's do, `functions`, too, are called so.
 /// Plans of an HDDL domain are sought without left recursion at first (planner.cpp).
 /// Source: Nau et al. 2003, J. Artif. Intell. Res. 20:379-404; order of bindings as SHOP3 4.3.
 PlanResult FindPlans(const Domain& domain, const Problem& problem, const PlanRequest& request = {},

@@ -92,6 +92,13 @@ bool IsUtf16(std::string_view text) {
          (start.size() == 2 && (start[0] == '\0') != (start[1] == '\0'));
 }
 
+/// Comments of other files, too, have `#-`.
+bool NamesADefinition(std::string_view text) {
+  const std::string lower = base::ToLower(text);
+  return lower.find("defdomain") != lower.npos || lower.find("defproblem") != lower.npos ||
+         lower.find("make-problem") != lower.npos;
+}
+
 std::string BeginOf(std::string_view text, const std::string& first_word) {
   if (!first_word.empty()) return "begins with (" + Excerpt(MakeSymbol(first_word));
   const bool is_blank = text.find_first_not_of(" \t\r\n\f\v\xEF\xBB\xBF") == text.npos;
@@ -112,8 +119,8 @@ Domain::Language LanguageOf(std::string_view text, const std::string& source) {
     if (WithoutPackage(word) == known) return Domain::Language::kShop2;
   }
   // Other forms of Lisp may stand before, and so may a mark of its reader.
-  const bool may_be_lisp =
-      !word.empty() || text.find("#+") != text.npos || text.find("#-") != text.npos;
+  const bool has_mark = text.find("#+") != text.npos || text.find("#-") != text.npos;
+  const bool may_be_lisp = !word.empty() || (has_mark && NamesADefinition(text));
   if (may_be_lisp && IsShop2File(text, source)) return Domain::Language::kShop2;
   throw base::ConfigError(fmt::format(
       "{}: is no planning file: it {}, wanted (defdomain or (defproblem for SHOP2, (define for "

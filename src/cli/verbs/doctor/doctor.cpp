@@ -14,6 +14,7 @@
 #include "hires/base/error.h"
 #include "hires/imagination/client_config.h"
 #include "hires/physics/physics_checks.h"
+#include "hires/robot/load_robot.h"
 #include "reports/text/report_table.h"
 
 namespace hires::cli {
@@ -126,7 +127,8 @@ int CheckTheFiles(const DoctorOptions& options, const DoctorBackends& backends) 
   ReportOrigin origin;
   origin.verb = "doctor";
   if (findings.passed) {  // else one of them may not be there
-    origin.inputs = {{"world", files.world}, {"map", files.map}, {"robot", files.robot}};
+    origin.inputs = {
+        {"world", files.world}, {"map", files.map}, {"robot", robot::FileOfRobot(files.robot)}};
   }
   WriteReport(report, origin, {{"ok", findings.passed}, {"findings", findings.list}});
   return findings.passed ? kExitRecommended : kExitBadInput;

@@ -127,7 +127,10 @@ std::vector<VerbFile> FilesOf(const SaveRolloutOptions& options) {
 }
 
 std::vector<std::string> StripFiles(const std::string& html) {
-  if (html.empty()) return {};
+  std::error_code none_there;
+  const bool is_device = std::filesystem::exists(html, none_there) &&
+                         !std::filesystem::is_regular_file(html, none_there);
+  if (html.empty() || is_device) return {};  // beside a device there is no room for pictures
   return {StripFile(html, "worst"), StripFile(html, "median")};
 }
 
@@ -169,6 +172,7 @@ void SaveRollout(const SaveRolloutOptions& options, int threads, QueryScene* sce
 std::vector<Strip> WriteStrips(const std::string& html, int threads, QueryScene* scene,
                                const imagination::Report& report,
                                const std::function<bool()>& cancelled) {
+  if (StripFiles(html).empty()) return {};
   const imagination::RolloutSetup& setup = scene->rollouts();
   reports::FilmParams params;
   params.threads = threads;
