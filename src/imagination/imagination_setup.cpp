@@ -135,8 +135,9 @@ bool AreOneKind(const world::ObjectModel& a, const world::ObjectModel& b) {
   return one.value() == other.value();
 }
 
-/// A kind of the world's own that has the name of another one, which may differ in its origin
-/// alone, goes on under a name that is free.
+/// A kind of the world's own that has the name of another one goes on under a name that is free.
+/// Where its origin alone is another one, it is that kind, and what is there is moved to that
+/// origin.
 void KeepApart(const world::ObjectModel& other, world::World* world) {
   const auto known = world->models.find(other.name);
   const auto is_of_it = [&](const world::ObjectState& object) {
@@ -145,6 +146,16 @@ void KeepApart(const world::ObjectModel& other, world::World* world) {
   const auto& objects = world->initial.objects;
   const bool is_used = std::any_of(objects.begin(), objects.end(), is_of_it);
   if (known == world->models.end() || !is_used || AreOneKind(*known->second, other)) return;
+  world::ObjectModel standing = *known->second;
+  const double lowest = world::LowestOf(standing);
+  world::PutOriginAtUnderside(&standing);
+  if (AreOneKind(standing, other)) {
+    for (world::ObjectState& object : world->initial.objects) {
+      if (is_of_it(object))
+        object.X_MO.translation += object.X_MO.rotation * Eigen::Vector3d(0.0, 0.0, lowest);
+    }
+    return;
+  }
   std::string free = other.name;
   for (int i = 2; world->FindModel(free) != nullptr; ++i)
     free = fmt::format("{}_{}", other.name, i);

@@ -128,22 +128,37 @@ double TurningRadius(const SteeredWheel& wheel, const Eigen::Vector3d& along,
   return ahead / std::tan(wheel.largest_angle) + across;
 }
 
-/// The middle between all wheels that turn as this one does and are on the floor, as the lowest is:
-/// what a base of four or six wheels turns about.
-Eigen::Vector3d MiddleOf(const Wheels& wheels, const FixedWheel& one) {
+/// Those of all wheels that turn as this one does and are on the floor, as the lowest is.
+std::vector<Eigen::Vector3d> CentresOnFloor(const Wheels& wheels, const FixedWheel& one) {
   std::vector<Eigen::Vector3d> centres;
   for (const FixedWheel& wheel : wheels.fixed)
     if (std::abs(wheel.axis.dot(one.axis)) > kParallel) centres.push_back(wheel.centre);
   double lowest = one.centre.z();
   for (const Eigen::Vector3d& centre : centres) lowest = std::min(lowest, centre.z());
-  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
-  int count = 0;
+  const auto is_above = [&](const Eigen::Vector3d& centre) {
+    return centre.z() - lowest > kSameFloor;
+  };
+  centres.erase(std::remove_if(centres.begin(), centres.end(), is_above), centres.end());
+  return centres;
+}
+
+/// The middle between the wheels of all axles: what a base of four or six wheels turns about. A
+/// wheel alone in its row is a support, if there are others.
+Eigen::Vector3d MiddleOf(const Wheels& wheels, const FixedWheel& one) {
+  const std::vector<Eigen::Vector3d> centres = CentresOnFloor(wheels, one);
+  const Eigen::Vector3d ahead = Eigen::Vector3d::UnitZ().cross(one.axis.normalized());
+  std::vector<Eigen::Vector3d> of_axles;
   for (const Eigen::Vector3d& centre : centres) {
-    if (centre.z() - lowest > kSameFloor) continue;
-    sum += centre;
-    ++count;
+    const auto is_in_its_row = [&](const Eigen::Vector3d& other) {
+      return std::abs((other - centre).dot(ahead)) <= kOnAxles;
+    };
+    if (std::count_if(centres.begin(), centres.end(), is_in_its_row) > 1)  // itself and another
+      of_axles.push_back(centre);
   }
-  return sum / count;
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  const auto& counted = of_axles.empty() ? centres : of_axles;
+  for (const Eigen::Vector3d& centre : counted) sum += centre;
+  return sum / static_cast<double>(counted.size());
 }
 
 /// What of its wheels does not fit to how a base drives: it goes along the x axis of base_link, and

@@ -580,7 +580,12 @@ Robot LoadRobotToDescribe(const UrdfFile& file, const std::string& xml) {
   Robot robot = WithoutFootprint(file, &reading);
   robot.profile.footprint =
       OutlineIfAny(robot.model, robot.profile.base_link, robot.profile.joints);
-  if (!robot.profile.footprint.empty()) CompleteBare(reading, file.path, xml, &robot);
+  if (!robot.profile.footprint.empty()) {
+    CompleteBare(reading, file.path, xml, &robot);
+  } else {
+    for (const std::string& doubt : reading.doubts)
+      base::Log(base::LogLevel::kWarn, fmt::format("urdf={} {}", file.path, doubt));
+  }
   return robot;
 }
 

@@ -18,13 +18,18 @@ std::string MendInertia(ObjectModel* object) {
       why, taken[0], taken[1], taken[2]);
 }
 
+double LowestOf(const ObjectModel& object) {
+  if (object.collisions.empty()) return 0.0;
+  geometry::Aabb bounds;
+  for (const geometry::Collision& shape : object.collisions)
+    bounds.Include(geometry::BoundsOf(shape.shape, shape.X_BS));
+  return bounds.lower.z();
+}
+
 std::string PutOriginAtUnderside(ObjectModel* object) {
   constexpr double kRounding = 1e-6, kWorthSaying = 1e-3;  // [m]
-  geometry::Aabb bounds;
-  for (const geometry::Collision& shape : object->collisions)
-    bounds.Include(geometry::BoundsOf(shape.shape, shape.X_BS));
-  const double lowest = bounds.lower.z();
-  if (object->collisions.empty() || std::abs(lowest) <= kRounding) return "";
+  const double lowest = LowestOf(*object);
+  if (std::abs(lowest) <= kRounding) return "";
   object->mass_properties.p_BBcm.z() -= lowest;
   for (geometry::Collision& shape : object->collisions) shape.X_BS.translation.z() -= lowest;
   if (std::abs(lowest) <= kWorthSaying) return "";

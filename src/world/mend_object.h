@@ -12,6 +12,9 @@ namespace hires::world {
 /// @pre it has shapes, and geometry::WhyUnphysical says nothing.
 std::string MendInertia(ObjectModel* object);
 
+/// [m] Over the origin, along its z axis; 0 without shapes.
+double LowestOf(const ObjectModel& object);
+
 /// Moves the origin to the height of the lowest point of its shapes, as a pose of an object is that
 /// of the middle of its underside; one that is there already stays to the bit.
 /// @return where it was, for LoadNotes behind "object", where that is more than 1 mm off; else "".

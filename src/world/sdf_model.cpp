@@ -57,7 +57,7 @@ double FrictionOf(const sdf::Collision& collision) {
   const auto along = [&](const char* direction, double not_there) {
     return NumberAt(collision.Element(), {"surface", "friction", "ode", direction}, not_there);
   };
-  const double mu = along("mu", along("mu2", otherwise));
+  const double mu = along("mu", otherwise);
   return std::min(mu, along("mu2", mu));
 }
 

@@ -424,7 +424,7 @@ TEST(SetupHashTest, WorldObjectsAndParametersMatter) {
 
 /// A mill with its origin in its middle, once in the world and once as an object of its own file or
 /// of the catalogue, where its origin is at its underside.
-TEST(OwnObjectTest, AKindOfTheWorldKeepsItsOriginBesideTheFileOfTheSame) {
+TEST(OwnObjectTest, AKindOfTheWorldThatDiffersInItsOriginAloneIsTheSameKind) {
   std::string mill = SceneFile::MillSdf("jug", 0.14);
   mill.replace(mill.find("0 0 0.137"), 9, "0 0 0");
   for (const bool is_of_catalogue : {true, false}) {
@@ -448,7 +448,10 @@ TEST(OwnObjectTest, AKindOfTheWorldKeepsItsOriginBesideTheFileOfTheSame) {
       const geometry::Collision& shape = model.collisions.at(0);
       return geometry::BoundsOf(shape.shape, shape.X_BS).lower.z();
     };
-    EXPECT_NEAR(lowest(*world.ModelOf(*world.initial.Find("jug7"))), -0.137, 1e-9);
+    const world::ObjectState& jug7 = *world.initial.Find("jug7");
+    EXPECT_EQ(jug7.model, "jug");
+    EXPECT_NEAR(jug7.X_MO.translation.z(), 0.0, 1e-9);
+    EXPECT_NEAR(lowest(*world.ModelOf(jug7)), 0.0, 1e-9);
     EXPECT_NEAR(lowest(*world.RequireModel("jug")), 0.0, 1e-9);
   }
 }

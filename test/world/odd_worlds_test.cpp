@@ -143,7 +143,7 @@ std::vector<Oddity> Oddities() {
       {"size of nothing", false,
        [](Name n) {
          return StaticModel(n, "<link name='l'><collision name='" + n +
-                                   "'><geometry><box><size>2 0 1</size></box></geometry>"
+                                   "'><geometry><box><size>2 0 0</size></box></geometry>"
                                    "</collision></link>");
        },
        "with a shape of size 0 left out, as nothing touches it"},

@@ -403,12 +403,11 @@ TEST_F(WildWorldTest, ASubmeshOfColladaIsNamedByItsNodeAndPlacedByIt) {
 
 TEST_F(WildWorldTest, ShapesOfSizeZeroAreLeftOutAndTheOthersStay) {
   for (const std::string nothing :
-       {"<box><size>0 0 0</size></box>", "<box><size>2 0 1</size></box>",
+       {"<box><size>0 0 0</size></box>", "<box><size>2 0 0</size></box>",
         "<cylinder><radius>0</radius><length>1</length></cylinder>",
-        "<cylinder><radius>1</radius><length>0.0</length></cylinder>",
         "<sphere><radius>0</radius></sphere>",
         "<capsule><radius>0</radius><length>1</length></capsule>",
-        "<ellipsoid><radii>1 0 1</radii></ellipsoid>"}) {
+        "<ellipsoid><radii>1 0 0</radii></ellipsoid>"}) {
     const World world =
         Load(StaticModel("a", "<link name='l'><collision name='c'><geometry>" + nothing +
                                   "</geometry></collision><collision name='d'><geometry>" +
@@ -418,6 +417,17 @@ TEST_F(WildWorldTest, ShapesOfSizeZeroAreLeftOutAndTheOthersStay) {
         << nothing;
     ASSERT_EQ(world.statics.size(), 1u) << nothing;
     EXPECT_EQ(world.statics[0].collisions.size(), 1u) << nothing;
+  }
+}
+
+/// It stops what drives there, or carries what stands on it.
+TEST_F(WildWorldTest, APlateWithoutThicknessIsNotLeftOut) {
+  for (const std::string plate : {"<box><size>2 0 1</size></box>", "<box><size>2 1 0</size></box>",
+                                  "<cylinder><radius>1</radius><length>0.0</length></cylinder>"}) {
+    EXPECT_THROW(Load(StaticModel("a", "<link name='l'><collision name='c'><geometry>" + plate +
+                                           "</geometry></collision></link>")),
+                 base::ConfigError)
+        << plate;
   }
 }
 

@@ -39,7 +39,7 @@ Eigen::Vector3d PrincipalMoments(const MassProperties& properties);
 
 /// Why no body that is made of these shapes has such an inertia; empty if one may. No principal
 /// moment is more than if all mass lay in the farthest corner of the shapes from the centre of
-/// mass; none is taken to be less than 1 % of the solid's, as of an inertia in other units.
+/// mass; the larger two are taken to be 1 % of the solid's at least: less is in other units.
 /// @pre WhyUnphysical is empty, shapes_B is not
 std::string WhyImplausible(const MassProperties& properties,
                            const std::vector<Collision>& shapes_B);

@@ -392,13 +392,15 @@ class UrdfCleaner {
   /// Makes numbers of the lower and the upper end, in this order.
   void CleanRange(const std::string& name, XMLElement* limit) {
     const int line = limit->GetLineNum();
+    std::string endless;
     for (const char* key : {"lower", "upper"}) {
       const char* text = limit->Attribute(key);
       const int side = text == nullptr ? 0 : SideWithoutEnd(text);
       if (side == 0) continue;
-      endless_.Add(line, name, fmt::format("{} is '{}'", key, text));
+      if (endless.empty()) endless = fmt::format("{} is '{}'", key, text);
       limit->SetAttribute(key, side > 0 ? kNoEnd : kNoEndBelow);
     }
+    if (!endless.empty()) endless_.Add(line, name, endless);
     for (const char* key : {"lower", "upper"}) {
       if (IsNumberOrLeftOut(*limit, key)) continue;
       wordy_.Add(line, name, fmt::format("{} is '{}'", key, limit->Attribute(key)));
@@ -437,7 +439,7 @@ class UrdfCleaner {
     wordy_.Tell(where_, "unreadable_limits",
                 "a limit that is no number says nothing, so that such a joint is held at 0");
     swapped_.Tell(where_, "limits_swapped", "a lower limit above the upper one changes with it");
-    endless_.Tell(where_, "without_end", "a joint without end may go to 1e16");
+    endless_.Tell(where_, "without_end", "a joint without end may go to 1e16, or turns on and on");
     unusable_.Tell(
         where_, "unusable_limits",
         "efforts and velocities that are no numbers of at least 0 are taken as not said");

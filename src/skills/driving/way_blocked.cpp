@@ -313,7 +313,7 @@ class Explainer {
   std::string LowText(const Eigen::Vector2d& cell_M) const {
     const bool is_thing = context_.obstacles && !IsHole(cell_M);
     const world::NamedOutline* there = is_thing ? NearestTo(cell_M) : nullptr;
-    if (there == nullptr || !IsLow(*there)) return "";
+    if (there == nullptr || !IsLow(*there) || !robot::HasShapes(context_.robot->model)) return "";
     geometry::Aabb all;
     for (const geometry::Aabb& link : robot::LinkBounds(*context_.robot)) all.Include(link);
     return fmt::format(

@@ -90,18 +90,21 @@ void SplitShapes(XMLElement* collision, const std::string& path, LoadNotes* note
   }
 }
 
-/// Planes have none, and a mesh of scale 0 is a mistake.
+/// A point or a line. Planes have no size, and a mesh of scale 0 is a mistake, as is a plate
+/// without thickness: something lies on it, or would be stopped by it.
 bool IsOfSizeZero(const XMLElement& shape) {
   static const std::set<std::string> sized{"box",  "cylinder",  "sphere",  "capsule",
                                            "cone", "ellipsoid", "polyline"};
   if (sized.count(shape.Name()) == 0) return false;
+  int num_zeros = 0;
   for (const char* name : {"size", "radius", "length", "radii", "height"}) {
     const std::string text = TrimmedText(shape.FirstChildElement(name));
     for (const char* at = text.c_str(); *at != '\0';) {
       char* end = nullptr;
       const double number = std::strtod(at, &end);
       if (end == at) break;  // no number, of which others tell
-      if (number == 0.0) return true;
+      const bool is_radius = name == std::string("radius");
+      if (number == 0.0 && (is_radius || ++num_zeros == 2)) return true;
       at = end + (*end == ',' ? 1 : 0);
     }
   }

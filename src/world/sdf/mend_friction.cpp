@@ -29,12 +29,14 @@ std::optional<double> CoefficientIn(const XMLElement* element) {
   return is_whole ? std::optional<double>(number) : std::nullopt;
 }
 
-/// The smallest that is written, as a contact slips that way first; else SDF's default.
+/// The smallest, as a contact slips that way first, with SDF's default for the first.
 double SmallestOf(XMLElement* engine, const char* one, const char* other) {
-  const auto first = CoefficientIn(Within(engine, one)),
-             second = CoefficientIn(Within(engine, other));
-  if (first && second) return std::min(*first, *second);
-  return first.value_or(second.value_or(1.0));
+  const auto meant = [&](const char* name, double not_there) {
+    const double mu = CoefficientIn(Within(engine, name)).value_or(not_there);
+    return std::isfinite(mu) && mu >= 0.0 ? mu : base::kNoSlip;
+  };
+  const double first = meant(one, 1.0);
+  return std::min(first, meant(other, first));
 }
 
 }  // namespace
