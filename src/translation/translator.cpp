@@ -62,7 +62,7 @@ bool IsWithin(const Area& area, const geometry::Pose2& X_MB) {
 /// The middle of a room may happen to be an area to stand at, but not in every direction.
 /// @throws base::ConfigError for the floor of a world without rooms, which has none
 geometry::Pose2 MiddleOf(const TranslatorContext& context, const Area& area) {
-  if (area.name == kFloorArea) {
+  if (area.name == kFloorArea && context.world->frames.count(area.name) == 0) {
     throw base::ConfigError(fmt::format(
         "RobotAt({}): nothing says where on the floor; wanted the robot's pose on the Blackboard "
         "(hasPose), or an area's name",

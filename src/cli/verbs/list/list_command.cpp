@@ -137,6 +137,7 @@ Rows Areas(const Sources& sources) {
   spelling.emplace(translation::kTrayArea, "trayArea1");  // as the ontology's knowledge spells it
   Rows rows;
   for (const translation::Area& area : translation::AreasOf(world, robot).all) {
+    if (area.name == translation::kFloorArea && world.frames.count(area.name) == 0) continue;
     rows.push_back(AreaRow(Spelled(area.name, spelling), KindOf(area.kind),
                            area.link.empty() ? "map" : area.link, area.X_FA.translation,
                            geometry::YawOf(area.X_FA.rotation)));
