@@ -32,6 +32,7 @@ constexpr double kMostThrough = 0.008;  // of the beams
 constexpr double kLeastExplained = 0.6;
 constexpr int kFewLost = 20;
 constexpr double kLeastAlike = 0.8, kMostAlike = 1.25;  // motion by the laser for that by odometry
+constexpr double kLeastOfField = 0.87, kMostOfField = 1.15;  // turns where the field is assumed
 constexpr double kLeastTurned = 0.5,
                  kMostTurned = 2.0;  // turns of bases that skid; the map is right
 constexpr int kFewDisagreed = 20;
@@ -121,7 +122,7 @@ bool AreWaysUnlike(const MapCounts& counts) {
 }
 bool AreTurnsUnlike(const MapCounts& counts, const MapEvidence& evidence) {
   const double alike = counts.turns_alike;
-  return evidence.is_field_assumed ? alike < kLeastAlike || alike > kMostAlike
+  return evidence.is_field_assumed ? alike < kLeastOfField || alike > kMostOfField
                                    : alike < kLeastTurned || alike > kMostTurned;
 }
 bool DoDisagree(const MapCounts& counts) {

@@ -61,7 +61,7 @@ TEST(MalformedTest, FilesAreToldApart) {
       {"(defproblem p () ())", {"bad.lisp:1:1", "holds no domain"}},
       {"(defdomain a ())\n(defdomain b ())", {"bad.lisp:2:1", "second domain", "line 1"}},
       {"(defdomain a ())\n(:method (m) () ())", {"bad.lisp:2:1", "(:method", "')' too many"}},
-      {"(defdomian a ())", {"bad.lisp:1:1", "came (defdomian a ())", "(defdomain name"}},
+      {"(defdomian a ())", {"bad.lisp:1:1", "came (defdomian a nil)", "(defdomain name"}},
       {"(defdomain a ())\n(defproblem p () ()) ((walk b))", {"bad.lisp:2:22", "came ((walk b))"}},
       {"(defdomain a ())\n(shop:defproblme p () ())", {"bad.lisp:2:1", "(defproblem name"}},
       {"defdomain", {"bad.lisp:1:1", "came defdomain"}},

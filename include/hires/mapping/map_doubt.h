@@ -20,9 +20,9 @@ MapEvidence EvidenceOf(const MapSketch& sketch, const world::OccupancyGrid& grid
 /// of the beams went through walls, that less than 60 % ended at one, that the map is broken
 /// (MapCounts::num_breaks), that the laser sees less than 0.8 or more than 1.25 of the ways that
 /// odometry tells, less than half or more than twice of the turns (as bases that skid turn less
-/// than their wheels tell; as of ways where the field of view is assumed), or turns reversed, that
-/// the two disagreed on more than three quarters (and at least twenty) of the stretches, or that
-/// more than a third of the scans fitted nothing. Empty: nothing does.
+/// than their wheels tell; 0.87 and 1.15 where the field of view is assumed), or turns reversed,
+/// that the two disagreed on more than three quarters (and at least twenty) of the stretches, or
+/// that more than a third of the scans fitted nothing. Empty: nothing does.
 std::string WhyDoubtful(const MapCounts& counts, const MapEvidence& evidence);
 
 /// What may help against what WhyDoubtful says; empty where that is.
