@@ -108,7 +108,7 @@ std::vector<Defect> OfWorlds() {
                        "</geometry><surface><bounce><restitution_coefficient>2</"
                        "restitution_coefficient></bounce></surface>"
                        "</collision></link></model>"),
-       "restitution is 2"},
+       "<restitution_coefficient>"},
   };
 }
 

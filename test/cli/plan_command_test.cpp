@@ -271,7 +271,7 @@ TEST(PlanCommandTest, TasksThatNobodyKnowsOrThatAreNoTasks) {
   ExpectRefused(Deliver("two_ways", {"--task", "delivr parcel anna"}), {"--task", "'deliver'"});
   ExpectRefused(Deliver("two_ways", {"--task", "(deliver parcel"}), {"--task:1:1"});
   ExpectRefused(Deliver("two_ways", {"--task", "deliver parcel"}), {"--task", "deliver"});
-  ExpectRefused(Deliver("two_ways", {"--task", " "}), {"--task", "names no task"});
+  ExpectRefused(Deliver("two_ways", {"--task", " "}), {"--task", "an empty text came"});
 }
 
 TEST(PlanCommandTest, OptionsOutOfRange) {
