@@ -11,6 +11,7 @@
 #include "hires/base/error.h"
 #include "hires/ros/knowledge/blackboard_messages.h"
 #include "hires/ros/names/topic_names.h"
+#include "hires/ros/node/service_links.h"
 #include "nodes/hires/remote_server.h"
 
 namespace hires_ros {
@@ -87,12 +88,11 @@ class RemoteBlackboard : public hires::cli::BlackboardAccess {
  private:
   template <typename Service>
   void Ask(const char* service, Service* call) {
-    const std::string name = kBlackboard + std::string("/") + service;
-    // First a probe: see ServiceLinks.
-    if (!ros::service::exists(name, false) || !ros::service::call(name, *call)) {
+    // Over a connection that lasts: else the server closes it behind its answer.
+    if (!links_.Call(service, call)) {
       throw ConfigError(fmt::format(
           "{} does not answer: the Blackboard went away; see its log, or add --store FILE",
-          ros::names::resolve(name)));
+          links_.NameOf(service)));
     }
     if (call->response.error.code != hires::BlackboardError::NONE) {
       throw ConfigError(call->response.error.message);
@@ -121,6 +121,7 @@ class RemoteBlackboard : public hires::cli::BlackboardAccess {
   }
 
   const ros::NodeHandle nh_;  // keeps ROS up
+  ServiceLinks links_{nh_, kBlackboard + std::string("/")};
 };
 
 }  // namespace
