@@ -135,6 +135,12 @@ bool AreOneKind(const world::ObjectModel& a, const world::ObjectModel& b) {
   return one.value() == other.value();
 }
 
+/// Whether a model of a world, which keeps its origin there, is that kind wherever its origin is.
+bool IsThatKind(world::ObjectModel of_world, const world::ObjectModel& kind) {
+  world::PutOriginAtUnderside(&of_world);
+  return AreOneKind(of_world, kind);
+}
+
 /// A kind of the world's own that has the name of another one goes on under a name that is free.
 /// Where its origin alone is another one, it is that kind, and what is there is moved to that
 /// origin.
@@ -146,10 +152,8 @@ void KeepApart(const world::ObjectModel& other, world::World* world) {
   const auto& objects = world->initial.objects;
   const bool is_used = std::any_of(objects.begin(), objects.end(), is_of_it);
   if (known == world->models.end() || !is_used || AreOneKind(*known->second, other)) return;
-  world::ObjectModel standing = *known->second;
-  const double lowest = world::LowestOf(standing);
-  world::PutOriginAtUnderside(&standing);
-  if (AreOneKind(standing, other)) {
+  if (IsThatKind(*known->second, other)) {
+    const double lowest = world::LowestOf(*known->second);
     for (world::ObjectState& object : world->initial.objects) {
       if (is_of_it(object))
         object.X_MO.translation += object.X_MO.rotation * Eigen::Vector3d(0.0, 0.0, lowest);
@@ -179,12 +183,7 @@ void RefuseTaken(const world::ObjectModel& model, const std::string& path,
                     model.name));
   }
   const auto known = world.models.find(model.name);
-  bool is_other = false;
-  if (known != world.models.end()) {
-    world::ObjectModel standing = *known->second;  // a world's model keeps its origin
-    world::PutOriginAtUnderside(&standing);
-    is_other = !AreOneKind(standing, model);
-  }
+  const bool is_other = known != world.models.end() && !IsThatKind(*known->second, model);
   const auto instance = instances.find(base::ToLower(model.name));
   const bool is_instance = instance != instances.end() && instance->second != model.name;
   if (is_instance || is_other) {

@@ -583,8 +583,7 @@ Robot LoadRobotToDescribe(const UrdfFile& file, const std::string& xml) {
   if (!robot.profile.footprint.empty()) {
     CompleteBare(reading, file.path, xml, &robot);
   } else {
-    for (const std::string& doubt : reading.doubts)
-      base::Log(base::LogLevel::kWarn, fmt::format("urdf={} {}", file.path, doubt));
+    SayDoubts(reading.doubts, file.path, robot);
   }
   return robot;
 }
