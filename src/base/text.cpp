@@ -108,6 +108,17 @@ std::string UnknownName(std::string_view kind, const std::string& name,
                      Join(NearestNames(name, known), "', '"));
 }
 
+void RefuseUtf16(std::string_view text, const std::string& path) {
+  const std::string_view mark = text.substr(0, 2);
+  const auto is_zero = [&](std::size_t i) { return text[i] == '\0'; };
+  const bool is_marked = mark == "\xFF\xFE" || mark == "\xFE\xFF";
+  const bool has_zeros = text.size() > 3 && is_zero(0) != is_zero(1) && is_zero(2) != is_zero(3) &&
+                         is_zero(0) == is_zero(2);
+  if (!is_marked && !has_zeros) return;
+  throw ConfigError(fmt::format(
+      "{}: is text in UTF-16, wanted UTF-8; save it as UTF-8 (iconv -f UTF-16 -t UTF-8)", path));
+}
+
 std::string ReadTextFile(const std::string& path, std::size_t max_bytes) {
   std::error_code error;
   const std::filesystem::file_status status = std::filesystem::status(path, error);

@@ -56,12 +56,7 @@ void RefuseOtherFiles(const std::string& path, const std::string& bytes) {
   if (bytes.rfind("version https://git-lfs", 0) == 0) {
     Fail(path, "is a pointer of Git LFS and not the mesh; run `git lfs pull` in its repository");
   }
-  const auto begins = [&](char first, char second) {
-    return bytes.size() > 1 && bytes[0] == first && bytes[1] == second;
-  };
-  const bool is_wide =
-      begins('\xFF', '\xFE') || begins('\xFE', '\xFF') || begins('<', '\0') || begins('\0', '<');
-  if (is_wide) Fail(path, "is text in UTF-16, wanted UTF-8; save it with that encoding");
+  base::RefuseUtf16(bytes, path);
 }
 
 /// What the importer says, with the file's name for the one that it makes up for bytes.

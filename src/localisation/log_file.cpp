@@ -65,10 +65,6 @@ std::string OtherKindOf(std::string_view text) {
        "is packed: unxz it"},
       {"\x28\xb5\x2f\xfd"sv, "is packed: unzstd it"},
       {"PK\x03\x04"sv, "is packed: unzip it"},
-      {"\xff\xfe"sv,
-       "is UTF-16 text; wanted ASCII or UTF-8: convert it (iconv -f UTF-16 -t UTF-8)"},
-      {"\xfe\xff"sv,
-       "is UTF-16 text; wanted ASCII or UTF-8: convert it (iconv -f UTF-16 -t UTF-8)"},
       {"SQLite format 3"sv,
        "is a ROS 2 bag: convert it to one of ROS 1 (rosbags-convert of the package rosbags)"},
       {"\x89MCAP"sv,
@@ -109,6 +105,7 @@ class CarmenReader {
  public:
   explicit CarmenReader(const std::string& path)
       : path_(path), text_(base::ReadTextFile(path, kMostLogBytes)) {
+    base::RefuseUtf16(text_, path_);
     const std::string other = OtherKindOf(text_);
     if (!other.empty()) throw base::ConfigError(path_ + ": " + other);
     if (text_.find('\n') == std::string::npos)  // an old Mac's ends of lines

@@ -227,6 +227,20 @@ TEST_F(ReadTextFileTest, AForbiddenFileIsNamed) {
               ThrowsMessage<ConfigError>(AllOf(HasSubstr(path), HasSubstr("permissions"))));
 }
 
+TEST(RefuseUtf16Test, TextOfTwoBytesALetterIsNamedAndNothingElse) {
+  using std::string_literals::operator""s;
+  for (const std::string& text : {"\xFF\xFE"s, "\xFE\xFF\0<"s, "<\0a\0"s, "\0<\0a"s}) {
+    EXPECT_THAT([&] { RefuseUtf16(text, "a.xml"); },
+                ThrowsMessage<ConfigError>(
+                    AllOf(HasSubstr("a.xml: is text in UTF-16"), HasSubstr("save it as UTF-8"))));
+  }
+  // The last three begin as binary files do: a short name, a count of either order.
+  for (const std::string& text :
+       {""s, "<"s, "<robot/>"s, "\xEF\xBB\xBF<a/>"s, "A\0\0\0"s, "\x04\0\0\0"s, "\0\0\0\x04"s}) {
+    EXPECT_NO_THROW(RefuseUtf16(text, "a.xml")) << text;
+  }
+}
+
 TEST(AllThatIsWrongTest, OneAloneIsItselfAndOfManyTheFirstAreListed) {
   EXPECT_EQ(AllThatIsWrong("a.yaml", {"a.yaml:1: x"}), "a.yaml:1: x");
   EXPECT_EQ(AllThatIsWrong("a.yaml", {"x", "y"}), "a.yaml: 2 things are wrong:\n  x\n  y");

@@ -348,8 +348,8 @@ TEST_F(OddLogsTest, FilesOfOtherKindsAreNamed) {
       {"\xfd\x37zXZ\0"s, "is packed: unxz it"},
       {"\x28\xb5\x2f\xfd"s, "is packed: unzstd it"},
       {"PK\x03\x04", "is packed: unzip it"},
-      {"\xff\xfeO\0D\0"s, "is UTF-16 text"},
-      {"\xfe\xff\0O\0D"s, "is UTF-16 text"},
+      {"\xff\xfeO\0D\0"s, "is text in UTF-16"},
+      {"\xfe\xff\0O\0D"s, "is text in UTF-16"},
       {"SQLite format 3\0"s, "is a ROS 2 bag: convert it"},
       {"\x89MCAP0\r\n"s, "is a ROS 2 bag: convert it"}};
   for (const auto& [begin, said] : kinds) {

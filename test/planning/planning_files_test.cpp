@@ -60,7 +60,8 @@ TEST(LanguageOfTest, OtherFilesAreNamed) {
 
 TEST(LanguageOfTest, WhatIsWrittenInUtf16OrEmptyIsCalledSo) {
   using std::string_literals::operator""s;
-  for (const std::string& text : {"\xFF\xFE(\0d\0"s, "\xFE\xFF\0(\0d"s, "(\0d\0"s, "\0(\0d"s}) {
+  for (const std::string& text :
+       {"\xFF\xFE(\0d\0"s, "\xFE\xFF\0(\0d"s, "(\0d\0e\0"s, "\0(\0d\0e"s}) {
     EXPECT_THAT(ErrorOf([&] { LanguageOf(text, "d.lisp"); }),
                 AllOf(HasSubstr("d.lisp: "), HasSubstr("UTF-16"), HasSubstr("save it as UTF-8")));
   }

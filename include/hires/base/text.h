@@ -27,6 +27,11 @@ std::string UnknownName(std::string_view kind, const std::string& name,
 /// unreadable or larger than `max_bytes`.
 std::string ReadTextFile(const std::string& path, std::size_t max_bytes = 64u << 20);
 
+/// Files that a Windows editor saved as "Unicode": letters of two bytes each, after a byte order
+/// mark or with a zero in each of the first two.  @param path  for the message.
+/// @throws ConfigError naming the path and what to do.
+void RefuseUtf16(std::string_view text, const std::string& path);
+
 /// All or nothing: a file of that name is replaced only when the new one is whole; of a link, the
 /// file that it leads to. A device or a pipe (/dev/stdout) stays what it is, and takes the text.
 /// @throws ConfigError naming the path if it cannot be written.

@@ -7,6 +7,7 @@
 
 #include "base/files/entities.h"
 #include "hires/base/error.h"
+#include "hires/base/text.h"
 
 namespace hires::base {
 namespace {
@@ -40,17 +41,10 @@ bool IsAt(std::size_t at, const char* start, const std::string& text) {
   return text.compare(at, std::string(start).size(), start) == 0;
 }
 
-void RefuseWideText(const std::string& text, const std::string& path) {
-  const bool is_wide = text.size() > 1 && (IsAt(0, "\xFF\xFE", text) || IsAt(0, "\xFE\xFF", text));
-  if (!is_wide) return;
-  throw ConfigError(
-      fmt::format("{}: is text in UTF-16, wanted UTF-8; save it with that encoding", path));
-}
-
 }  // namespace
 
 std::string PlainXml(std::string text, const std::string& path) {
-  RefuseWideText(text, path);
+  RefuseUtf16(text, path);
   RefuseEntities(text, path);
   if (IsAt(0, "\xEF\xBB\xBF", text)) Blank(0, 3, &text);
   for (std::size_t at = text.find('<'); at != std::string::npos; at = text.find('<', at)) {

@@ -85,13 +85,6 @@ std::vector<Problem> ReadProblems(const std::string& path, const Domain& domain)
   return problems;
 }
 
-/// Letters of two bytes each: with a byte order mark, or with a zero beside each letter of ASCII.
-bool IsUtf16(std::string_view text) {
-  const std::string_view start = text.substr(0, 2);
-  return start == "\xFF\xFE" || start == "\xFE\xFF" ||
-         (start.size() == 2 && (start[0] == '\0') != (start[1] == '\0'));
-}
-
 /// Comments of other files, too, have `#-`.
 bool NamesADefinition(std::string_view text) {
   const std::string lower = base::ToLower(text);
@@ -108,11 +101,7 @@ std::string BeginOf(std::string_view text, const std::string& first_word) {
 }  // namespace
 
 Domain::Language LanguageOf(std::string_view text, const std::string& source) {
-  if (IsUtf16(text)) {
-    throw base::ConfigError(fmt::format(
-        "{}: is no planning file as it is: it is written in UTF-16, wanted UTF-8; save it as UTF-8",
-        source));
-  }
+  base::RefuseUtf16(text, source);
   const std::string word = FirstWord(text, source);
   if (word == "define") return Domain::Language::kHddl;
   for (const char* known : {"defdomain", "defproblem", "make-problem", "in-package"}) {
