@@ -390,8 +390,9 @@ void CarmenReader::TakeFrontLaser() {
   scan.reading.angle_min = -geometry::kPi / 2.0;
   scan.reading.angle_increment = n < 2 ? 0.0 : geometry::kPi / static_cast<double>(n - n % 2);
   scan.reading.range_min = kCarmenMinRange;
-  // Lasers of 180 degrees have steps of 1, 0.5 or 0.25.
-  if (angles_doubt_.empty() && n > 2 && 720 % (n - n % 2) != 0) {
+  // Lasers of 180 degrees have steps of 1, 0.5 or 0.25, or few of several degrees.
+  scan.is_field_assumed = n > 2 && 720 % (n - n % 2) != 0;
+  if (angles_doubt_.empty() && scan.is_field_assumed) {
     angles_doubt_ = InLine(fmt::format(
         "FLASER of {} ranges says no angles; taken are steps of 180 degrees / {} from -90 degrees "
         "on. If the laser sees another angle, write lines ROBOTLASER1, which say theirs",

@@ -152,14 +152,6 @@ std::string QuestionOfWays(double ways_alike) {
          "ticks of the wheels)";
 }
 
-/// Lasers of half a circle have steps of 1, 0.5 or 0.25 degrees, or few of several degrees.
-bool IsFieldAssumed(double field_of_view, std::size_t num_steps) {
-  constexpr double kHalfCircle = 0.03;  // [rad] that may be one step less
-  const std::size_t num_even = num_steps + 1 - (num_steps + 1) % 2;
-  return num_even > 2 && std::abs(field_of_view - geometry::kPi) < kHalfCircle &&
-         720 % num_even != 0;
-}
-
 /// Where the beams' angles are the reason; empty: they cannot be.
 std::string QuestionOfAngles(double turns_alike, double field_of_view) {
   if (turns_alike <= 0.0) return "";
@@ -177,12 +169,12 @@ std::string QuestionOfAngles(double turns_alike, double field_of_view) {
 MapEvidence EvidenceOf(const MapSketch& sketch, const OccupancyGrid& grid) {
   MapEvidence evidence;
   if (!sketch.scans.empty()) {
-    const robot::ScanReading& first = sketch.scans.front()->reading;
-    const std::size_t num_steps = first.ranges.empty() ? 0 : first.ranges.size() - 1;
-    evidence.field_of_view = std::abs(first.angle_increment) * static_cast<double>(num_steps);
-    // FLASER's alone: what a message or another line says is no such number to the last bit.
-    evidence.is_field_assumed = first.angle_min == -geometry::kPi / 2.0 &&
-                                IsFieldAssumed(evidence.field_of_view, num_steps);
+    const localisation::RobotLog::Scan& first = *sketch.scans.front();
+    const std::size_t num_steps =
+        first.reading.ranges.empty() ? 0 : first.reading.ranges.size() - 1;
+    evidence.field_of_view =
+        std::abs(first.reading.angle_increment) * static_cast<double>(num_steps);
+    evidence.is_field_assumed = first.is_field_assumed;
   }
   evidence.returns = sketch.judge_returns();
   const double finer = grid.resolution / kJudgedCell;

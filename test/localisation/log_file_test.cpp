@@ -106,6 +106,16 @@ TEST_F(LogFileTest, FrontLaserSeesHalfACircleInWholeSteps) {
   EXPECT_TRUE(scan(0).ranges.empty());
 }
 
+TEST_F(LogFileTest, ItsFieldIsAssumedWhereNoLaserOfHalfACircleHasSuchSteps) {
+  const auto is_assumed = [&](int n) { return Read(FrontLaser(n)).scans.at(0).is_field_assumed; };
+  for (const int n : {1, 2, 5, 180, 181, 360, 361, 720, 721}) EXPECT_FALSE(is_assumed(n)) << n;
+  for (const int n : {342, 682, 1080, 1081}) EXPECT_TRUE(is_assumed(n)) << n;
+  EXPECT_FALSE(
+      Read("ROBOTLASER1 4 -1.57 3.14 0.0092 30 0.01 0 2 1 2 0 1 0 0 1 0 0 0 0 1 1 9" + At(1))
+          .scans.at(0)
+          .is_field_assumed);
+}
+
 TEST_F(LogFileTest, RobotLaserTellsItsAnglesItself) {
   const RobotLog log =
       Read("ROBOTLASER1 4 -2.35 4.7 2.35 30 0.01 0 3 1 2 3 2 7 8 1.1 0 0 1 0 0 0.5 0.1 1 1 9" +

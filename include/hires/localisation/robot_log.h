@@ -24,6 +24,7 @@ struct RobotLog {
     geometry::Pose2 X_BL;  ///< laser in base
     robot::ScanReading reading;
     std::optional<geometry::Pose2> X_OB;  ///< odometry at that time, where the log says so itself
+    bool is_field_assumed{false};  ///< the log says no angles, and its number of beams none either
   };
 
   std::vector<Odometry> odometry;
