@@ -168,6 +168,4 @@ void PlanProgress::Confirm(int index) {
   Changed();
 }
 
-bool PlanProgress::IsAnyActive() const { return run_ && !run_->Active().empty(); }
-
 }  // namespace hires::execution

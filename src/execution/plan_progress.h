@@ -52,7 +52,6 @@ class PlanProgress {
   void End(int step, StepPhase phase, const std::string& result, const base::Failure& failure);
   void Pass(int step);     ///< a step that is no action of the robot: done at once
   void Confirm(int step);  ///< its effects have been seen
-  bool IsAnyActive() const;
 
  private:
   void LeavePlan(const std::vector<std::pair<int, int>>& taken_over);

@@ -173,16 +173,6 @@ bool IsBelow(const RobotModel& model, int link, int above) {
   return link == above;
 }
 
-std::vector<std::string> LinksBelow(const RobotModel& model, const std::string& link) {
-  const std::optional<int> above = model.FindLink(link);
-  if (!above) Fail(model, base::UnknownName("link", link, model.LinkNames()));
-  std::vector<std::string> names;
-  for (std::size_t i = *above; i < model.links.size(); ++i) {
-    if (IsBelow(model, static_cast<int>(i), *above)) names.push_back(model.links[i].name);
-  }
-  return names;
-}
-
 UrdfReading ReadUrdf(const std::string& raw_xml, const std::string& where) {
   const std::string xml = base::PlainXml(raw_xml, where);
   // The outline first: it names lines, and it refuses nesting so deep that urdfdom would crash.

@@ -1,8 +1,10 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
+
 #include "hires/manipulation/grasp.h"
-#include "manipulation/upright_variant.h"
 #include "restaurant_scene.h"
 
 namespace hires::manipulation::holding_postures_test {
@@ -50,11 +52,11 @@ void TakeInHand(const std::string& arm, const Grasp& grasp, const ArmJoints& joi
   robot::SetGap(body.gripper, body.arms.at(arm), grasp.gap, posture);
 }
 
+/// Angle [rad] between the axis of what is held and the vertical.
 double Tilt(const std::string& arm, const Grasp& grasp, const robot::JointPositions& posture) {
   const ArmKinematics kinematics(*Pr2(), arm);
-  const CollisionScene scene = RestaurantScene();
-  return HeldTilt({&kinematics, &scene, kFreeFloor, posture, UprightAxis(grasp)},
-                  kinematics.JointsOf(posture));
+  const auto R_BT = kinematics.ToolPose(posture, kinematics.JointsOf(posture)).rotation;
+  return std::acos(std::clamp((R_BT * UprightAxis(grasp).normalized()).z(), -1.0, 1.0));
 }
 
 std::string TouchWith(const std::vector<world::ObjectState>& objects,
@@ -146,40 +148,6 @@ TEST(HoldingPosturesTest, PublishedCarryMeetsTheTrayBelowTorsoHeight019) {
   const auto touch = scene.FindTouch(kFreeFloor, closed(0.15));
   ASSERT_TRUE(touch);
   EXPECT_EQ(touch->a, "base_tray_link");
-}
-
-TEST(UprightVariantTest, FindsAFreeUprightPostureNearEveryNamedOneThatHolds) {
-  for (const std::string arm : {"leftarm1", "rightarm1"}) {
-    for (const std::string name : {"armtosideposture", "armcarryposture"}) {
-      for (const std::string kind : {"side", "top"}) {
-        const Grasp grasp = BestGrasp("coffee_cup", kind);
-        robot::JointPositions posture = Posture(name, 0.295);
-        const ArmKinematics kinematics(*Pr2(), arm);
-        const ArmJoints wanted = kinematics.JointsOf(posture);
-        TakeInHand(arm, grasp, wanted, &posture);
-        const world::ObjectState held = Held(arm, "coffee_cup", grasp, posture);
-        CollisionScene scene = RestaurantScene();
-        scene.SetObjects({held}, kFreeFloor, posture);
-        const ArmScene in{&kinematics, &scene, kFreeFloor, posture, UprightAxis(grasp)};
-        const auto variant = FindUprightVariant(in, wanted);
-        ASSERT_TRUE(variant) << arm << " " << name << " " << kind;
-        EXPECT_LE(HeldTilt(in, *variant), 0.1);
-        kinematics.SetJoints(*variant, &posture);
-        const auto links = scene.MovedBy(kinematics.joint_names());
-        EXPECT_FALSE(scene.FindTouch(kFreeFloor, posture, links));
-        EXPECT_EQ(FindUprightVariant(in, wanted), variant) << "not the same twice";
-      }
-    }
-  }
-}
-
-TEST(UprightVariantTest, AnUprightPostureStaysAsItIs) {
-  const Grasp grasp = BestGrasp("coffee_cup", "top");
-  const robot::JointPositions posture = Posture("armcarryposture", 0.295);
-  const ArmKinematics kinematics(*Pr2(), "rightarm1");
-  const CollisionScene scene = RestaurantScene();
-  const ArmScene in{&kinematics, &scene, kFreeFloor, posture, UprightAxis(grasp)};
-  EXPECT_EQ(FindUprightVariant(in, kinematics.JointsOf(posture)), kinematics.JointsOf(posture));
 }
 
 }  // namespace

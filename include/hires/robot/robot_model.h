@@ -66,9 +66,6 @@ const Joint* FindJoint(const RobotModel& model, const std::string& name);
 std::optional<int> FindLinkOf(const RobotModel& model, const std::string& joint);
 /// Whether `link` is `above` itself or carried by it, whatever joints lie between. Indices.
 bool IsBelow(const RobotModel& model, int link, int above);
-/// Names of `link` and of all links that it carries, in the order of model.links.
-/// @throws base::ConfigError if there is no such link.
-std::vector<std::string> LinksBelow(const RobotModel& model, const std::string& link);
 
 /// Reads a URDF. Collision meshes (package:// by ROS_PACKAGE_PATH or a folder above the file,
 /// model:// as worlds have it, file://, or relative to the file) are loaded; a missing one is an
