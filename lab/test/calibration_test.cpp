@@ -146,7 +146,7 @@ TEST(PearsonCorrelationTest, PerfectNoneAndWorkedByHand) {
   EXPECT_NEAR(PearsonCorrelation({1.0, 2.0, 3.0}, {2.0, 4.0, 6.0}).estimate, 1.0, 1e-12);
   EXPECT_EQ(PearsonCorrelation({1.0, 1.0}, {2.0, 4.0}).estimate, 0.0);
   // Deviations (-1.5, -0.5, 0.5, 1.5) and (-1.5, 0.5, -0.5, 1.5): 4 / 5.
-  const reports::Interval r = PearsonCorrelation({1.0, 2.0, 3.0, 4.0}, {1.0, 3.0, 2.0, 4.0});
+  const Interval r = PearsonCorrelation({1.0, 2.0, 3.0, 4.0}, {1.0, 3.0, 2.0, 4.0});
   EXPECT_NEAR(r.estimate, 0.8, 1e-12);
   EXPECT_NEAR(r.lower, std::tanh(std::atanh(0.8) - 1.959963984540054), 1e-12);
 }

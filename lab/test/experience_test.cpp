@@ -152,7 +152,7 @@ TEST(SeparationTest, NormalDistributionsHaveTheAreaOfTheBinormalModel) {
       run.negative.push_back(rng.Normal(0.0, 1.0));
     }
   }
-  const reports::Interval area = AreaInterval({runs}, base::Rng(4));
+  const Interval area = AreaInterval({runs}, base::Rng(4));
   EXPECT_NEAR(area.estimate, 0.7602, 0.01);
   EXPECT_LT(area.lower, area.estimate);
   EXPECT_GT(area.upper, area.estimate);
@@ -178,7 +178,7 @@ TEST(SeparationTest, WhatKnowsTheStratumAloneTellsNothingWithin) {
     }
   }
   EXPECT_GT(AreaInterval({all}, base::Rng(4)).lower, 0.6);
-  const reports::Interval within = AreaIntervalWithin(strata, base::Rng(4));
+  const Interval within = AreaIntervalWithin(strata, base::Rng(4));
   EXPECT_NEAR(within.estimate, 0.5, 0.03);
   EXPECT_LT(within.lower, 0.5);
   EXPECT_GT(within.upper, 0.5);
@@ -199,9 +199,9 @@ TEST(SeparationTest, ResamplingKeepsHowManyRunsOfEachKindThereAre) {
     runs.push_back(slow);
     kinds.push_back("slow");
   }
-  const reports::Interval mixed = AreaInterval({runs}, base::Rng(4));
+  const Interval mixed = AreaInterval({runs}, base::Rng(4));
   EXPECT_GT(mixed.upper - mixed.lower, 0.02);
-  const reports::Interval area = AreaInterval(StrataOf(runs, kinds), base::Rng(4));
+  const Interval area = AreaInterval(StrataOf(runs, kinds), base::Rng(4));
   EXPECT_DOUBLE_EQ(area.estimate, mixed.estimate);
   EXPECT_DOUBLE_EQ(area.lower, area.estimate);
   EXPECT_DOUBLE_EQ(area.upper, area.estimate);

@@ -6,7 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "lab/src/experiment/kinds.h"
-#include "reports/text/statistics.h"
+#include "lab/src/statistics.h"
 
 namespace hires::lab::experiment_kinds_test {
 namespace {
@@ -22,7 +22,7 @@ double ValueOf(const Findings& findings, const std::string& name) {
   return std::nan("");
 }
 
-reports::Interval IntervalOf(const Findings& findings, const std::string& name) {
+Interval IntervalOf(const Findings& findings, const std::string& name) {
   for (const NamedInterval& each : findings.intervals) {
     if (each.name == name) return each.interval;
   }
@@ -207,7 +207,7 @@ std::vector<int> DrawnCounts(int num, int below, base::Rng rng) {
   return counts;
 }
 
-double Width(const reports::Interval& interval) { return interval.upper - interval.lower; }
+double Width(const Interval& interval) { return interval.upper - interval.lower; }
 
 TEST(ToppleLoopTest, EqualRoundsLeaveNoDoubtThoughTheirLegsDiffer) {
   const std::vector<int> fast(10, 20), slow(8, 10);
@@ -216,12 +216,11 @@ TEST(ToppleLoopTest, EqualRoundsLeaveNoDoubtThoughTheirLegsDiffer) {
   EXPECT_EQ(ValueOf(findings, "independent_parts_fast"), 20.0);
   EXPECT_EQ(ValueOf(findings, "independent_parts_slow"), 8.0);
   for (const char* suffix : {"", "_10hz"}) {
-    const reports::Interval share =
-        IntervalOf(findings, std::string("shaking_share_fast") + suffix);
+    const Interval share = IntervalOf(findings, std::string("shaking_share_fast") + suffix);
     EXPECT_EQ(share.estimate, 0.1);
     EXPECT_EQ(share.lower, 0.1);
     EXPECT_EQ(share.upper, 0.1);
-    const reports::Interval ratio = IntervalOf(findings, std::string("shaking_ratio") + suffix);
+    const Interval ratio = IntervalOf(findings, std::string("shaking_ratio") + suffix);
     EXPECT_NEAR(ratio.estimate, 2.0, 1e-12);
     EXPECT_EQ(Width(ratio), 0.0);
   }
@@ -236,19 +235,18 @@ TEST(ToppleLoopTest, OfManyRoundsIntervalsAreTheNormalOnes) {
   const std::vector<int> fast = DrawnCounts(kRounds, 41, base::Rng(3)),
                          slow = DrawnCounts(kRounds, 21, base::Rng(4));
   const Findings findings = SumUpToppleLoop(Loop(), 1, {{Rounds(fast)}, {Rounds(slow)}});
-  const reports::Interval fast_mean = reports::MeanInterval(ShakingSharesOf(fast)),
-                          slow_mean = reports::MeanInterval(ShakingSharesOf(slow));
+  const Interval fast_mean = MeanInterval(ShakingSharesOf(fast)),
+                 slow_mean = MeanInterval(ShakingSharesOf(slow));
   for (const char* suffix : {"", "_10hz"}) {
     // An end is off by 0.06 standard errors, which is what 2000 resamples are worth. Single legs as
     // parts would give half as much again.
-    const reports::Interval share =
-        IntervalOf(findings, std::string("shaking_share_fast") + suffix);
+    const Interval share = IntervalOf(findings, std::string("shaking_share_fast") + suffix);
     const double error = Width(fast_mean) / 2.0 / 1.96;
     EXPECT_NEAR(share.estimate, fast_mean.estimate, 1e-12);
     EXPECT_NEAR(share.lower, fast_mean.lower, 0.25 * error);
     EXPECT_NEAR(share.upper, fast_mean.upper, 0.25 * error);
     // Relative errors of both add up in squares.
-    const reports::Interval ratio = IntervalOf(findings, std::string("shaking_ratio") + suffix);
+    const Interval ratio = IntervalOf(findings, std::string("shaking_ratio") + suffix);
     const double half = ratio.estimate * std::hypot(Width(fast_mean) / 2.0 / fast_mean.estimate,
                                                     Width(slow_mean) / 2.0 / slow_mean.estimate);
     EXPECT_NEAR(ratio.lower, ratio.estimate - half, 0.15 * half);
@@ -264,14 +262,14 @@ TEST(ToppleLoopTest, WhereAChainHasOneTruthItIsOnePart) {
     shares.push_back(2 * c / 200.0);
   }
   ToppleLoopConfig loop = Loop();
-  const reports::Interval by_round =
+  const Interval by_round =
       IntervalOf(SumUpToppleLoop(loop, 1, {chains, chains}), "shaking_share_fast");
   loop.one_truth_per_chain = true;
   const Findings findings = SumUpToppleLoop(loop, 1, {chains, chains});
-  const reports::Interval by_chain = IntervalOf(findings, "shaking_share_fast");
+  const Interval by_chain = IntervalOf(findings, "shaking_share_fast");
   EXPECT_EQ(ValueOf(findings, "independent_parts_fast"), 20.0);
   EXPECT_NE(findings.tables[1].title.find("20 and 20 chains"), std::string::npos);
-  const double half = 1.96 * reports::Deviation(shares) / std::sqrt(20.0);
+  const double half = 1.96 * Deviation(shares) / std::sqrt(20.0);
   EXPECT_NEAR(Width(by_chain), 2.0 * half, 0.15 * half);
   EXPECT_NEAR(Width(by_chain) / Width(by_round), 3.0, 0.4) << "nine rounds a chain";
 }

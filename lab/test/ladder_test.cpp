@@ -89,7 +89,7 @@ TEST(LadderMeasureTest, StopsWhenCancelled) {
 }
 
 TEST(LadderMeasureTest, RatiosHaveTheIntervalOfTheirLogarithms) {
-  const reports::Interval ratio = RatioOf({1.0, 1.0, 1.0}, {1.0, 2.0, 4.0});
+  const Interval ratio = RatioOf({1.0, 1.0, 1.0}, {1.0, 2.0, 4.0});
   constexpr double kT = 4.302652729911275;  // Student, 2 degrees of freedom, 97.5 %
   const double half = kT * std::log(2.0) / std::sqrt(3.0);
   EXPECT_NEAR(ratio.estimate, 2.0, 1e-12);

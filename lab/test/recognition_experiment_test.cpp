@@ -144,7 +144,7 @@ TEST(RecognitionGoalTest, AValueAtItsBoundMeetsItAndOneBeyondDoesNot) {
 TEST(RecognitionGoalTest, AShareWhoseIntervalHoldsTheBoundDecidesNothing) {
   const auto verdict = [](double value, double lower, double upper) {
     return ToString(
-        RecognitionGoal{"", value, 0.98, false, reports::Interval{value, lower, upper}}.verdict());
+        RecognitionGoal{"", value, 0.98, false, Interval{value, lower, upper}}.verdict());
   };
   EXPECT_EQ(verdict(0.99, 0.98, 1.0), "met");
   EXPECT_EQ(verdict(1.0, 0.8, 1.0), "undecided");
@@ -155,7 +155,7 @@ TEST(RecognitionGoalTest, AShareWhoseIntervalHoldsTheBoundDecidesNothing) {
 // Without a miss each of equal tables is one case: 0.025^(1/n) >= bound for n >= log 0.025 / log
 // bound. Unequal ones are (sum of m)^2 / sum of m^2 cases: 144 / 66 of the three of 4, 1 and 7.
 TEST(RecognitionGoalTest, SoManyTablesDecideAsTheClosedFormSays) {
-  const std::vector<reports::ClusterCounts> flawless{{4, 4}, {4, 4}, {4, 4}};
+  const std::vector<ClusterCounts> flawless{{4, 4}, {4, 4}, {4, 4}};
   EXPECT_EQ(TablesToDecide(flawless, 3, 0.98), 183);
   EXPECT_EQ(TablesToDecide(flawless, 3, 0.95), 72);
   EXPECT_EQ(TablesToDecide(flawless, 6, 0.95), 144) << "every other one has no case";
@@ -212,9 +212,9 @@ TEST(RecognitionGoalTest, ThingsOfOneTableSayLessThanThoseOfMany) {
     things[i].called = i % 40 < 20 ? "mug" : "";
     things[i].table = i % 40;
   }
-  const reports::Interval pairs = reports::ClusteredShareInterval(CountsOf(things, kNamed));
+  const Interval pairs = ClusteredShareInterval(CountsOf(things, kNamed));
   for (int i = 0; i < 80; ++i) things[i].table = i;
-  const reports::Interval single = reports::ClusteredShareInterval(CountsOf(things, kNamed));
+  const Interval single = ClusteredShareInterval(CountsOf(things, kNamed));
   EXPECT_DOUBLE_EQ(pairs.estimate, single.estimate);
   EXPECT_GT(pairs.upper - pairs.lower, 1.3 * (single.upper - single.lower));
 }

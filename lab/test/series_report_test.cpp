@@ -230,7 +230,7 @@ TEST(SharesByChoiceTest, BrokenRunsSayNothingOfAChoice) {
   EXPECT_EQ(shares[0].played, 1);
   EXPECT_EQ(shares[1].succeeded, 0);
   EXPECT_EQ(shares[1].played, 2);
-  EXPECT_EQ(shares[1].share.upper, reports::WilsonInterval(0, 2).upper);
+  EXPECT_EQ(shares[1].share.upper, WilsonInterval(0, 2).upper);
 }
 
 TEST(SeriesCsvTest, HasAColumnForEachGroupAndQuotesWhatNeedsIt) {

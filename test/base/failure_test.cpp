@@ -7,7 +7,6 @@
 #include <stdexcept>
 #include <string>
 
-#include "hires/base/failure_block.h"
 #include "hires/base/text.h"
 
 namespace hires::base::failure_test {
@@ -25,13 +24,6 @@ TEST(FailureTest, EveryCodeHasOneNumberAndOneWordAndComesBackFromBoth) {
     EXPECT_EQ(FailureCodeOf(number), info.code);
     EXPECT_EQ(ToString(info.code), info.word);
   }
-}
-
-TEST(FailureTest, TheFirstBlockIsOfThings) {
-  EXPECT_TRUE(IsOfThings(FailureCode::kObjectFell));
-  EXPECT_TRUE(IsOfThings(FailureCode::kUnknownModel)) << "the last one";
-  EXPECT_FALSE(IsOfThings(FailureCode::kRobotCollision)) << "the first one beyond";
-  EXPECT_FALSE(IsOfThings(FailureCode::kNone));
 }
 
 TEST(FailureTest, TableKnowsEveryEnumerator) {

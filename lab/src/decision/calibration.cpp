@@ -197,15 +197,15 @@ TestResult UniformTest(std::vector<double> values) {
   return {distance, KolmogorovTail(distance * (root + 0.12 + 0.11 / root))};
 }
 
-reports::Interval PearsonCorrelation(const std::vector<double>& first, const std::vector<double>& second) {
+Interval PearsonCorrelation(const std::vector<double>& first, const std::vector<double>& second) {
   HIRES_CHECK(first.size() == second.size(), "there are not as many of one as of the other");
-  const double mean_first = reports::Mean(first), mean_second = reports::Mean(second);
+  const double mean_first = base::Mean(first), mean_second = base::Mean(second);
   double both = 0.0;
   for (std::size_t i = 0; i < first.size(); ++i) {
     both += (first[i] - mean_first) * (second[i] - mean_second);
   }
   const double n = static_cast<double>(first.size());
-  const double spread = n * reports::Deviation(first) * reports::Deviation(second);
+  const double spread = n * Deviation(first) * Deviation(second);
   if (spread <= 0.0) return {0.0, -1.0, 1.0};
   const double r = std::clamp(both / spread, -1.0, 1.0);
   if (n <= 3.0) return {r, -1.0, 1.0};
@@ -224,7 +224,7 @@ double MeanMaximumRankViolation(const std::vector<double>& foretold,
       largest[i] = std::max(largest[i], std::abs(real[i] - real[j]));
     }
   }
-  return reports::Mean(largest);
+  return base::Mean(largest);
 }
 
 }  // namespace hires::lab

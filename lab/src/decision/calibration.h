@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "hires/base/rng.h"
-#include "reports/text/statistics.h"
+#include "lab/src/statistics.h"
 
 // How well probabilities that were said beforehand fit what came.
 namespace hires::lab {
@@ -81,7 +81,7 @@ TestResult UniformTest(std::vector<double> values);
 
 /// Pearson's correlation with an interval by Fisher's transformation (n > 3, else -1 .. 1); 0 where
 /// one of both does not vary.  @pre sizes agree.
-reports::Interval PearsonCorrelation(const std::vector<double>& first, const std::vector<double>& second);
+Interval PearsonCorrelation(const std::vector<double>& first, const std::vector<double>& second);
 
 /// Mean maximum rank violation [Li et al. 2024, arXiv:2405.05941, SIMPLER]: the mean over i of the
 /// largest |real_i - real_j| over those j that both order differently, that is where

@@ -71,7 +71,7 @@ void TestDurations(const std::vector<PlayedStep>& steps, base::Rng rng, Calibrat
     ++report->pit[static_cast<std::size_t>(std::min(kBins - 1, static_cast<int>(pit * kBins)))];
   }
   report->num_durations = static_cast<int>(pits.size());
-  report->duration_coverage = reports::ShareInterval(covered, report->num_durations);
+  report->duration_coverage = ShareInterval(covered, report->num_durations);
   report->pit_uniform = UniformTest(pits);
 }
 
@@ -83,7 +83,7 @@ CalibrationReport::Group GroupOf(const std::string& name, const std::vector<Play
     group.num_success += step.play.success() ? 1 : 0;
     group.predicted += step.share() / static_cast<double>(steps.size());
   }
-  group.success = reports::ShareInterval(group.num_success, group.num_steps);
+  group.success = ShareInterval(group.num_success, group.num_steps);
   group.brier = Brier(ForecastsOf(steps), kBins);
   return group;
 }
@@ -131,7 +131,7 @@ void CompareWithOracle(const std::vector<DecisionRecord>& records, CalibrationRe
   report->num_actions = static_cast<int>(actions.size());
   report->correlation = PearsonCorrelation(foretold, real);
   report->rank_violation = MeanMaximumRankViolation(foretold, real);
-  report->success_coverage = reports::ShareInterval(covered, num_intervals);
+  report->success_coverage = ShareInterval(covered, num_intervals);
 }
 
 }  // namespace

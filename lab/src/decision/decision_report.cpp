@@ -111,8 +111,8 @@ DecisionArm SumUp(const std::string& name, const DecisionSetting& setting,
     arm.num_undecided += IsUndecided(name, record, scale) ? 1 : 0;
     AddEffort(name, record, &arm);
   }
-  arm.cost = reports::MeanInterval(Costs(arm));
-  arm.success = reports::ShareInterval(num_success, static_cast<int>(arm.tasks.size()));
+  arm.cost = MeanInterval(Costs(arm));
+  arm.success = ShareInterval(num_success, static_cast<int>(arm.tasks.size()));
   return arm;
 }
 
@@ -120,9 +120,9 @@ void AddRegrets(std::map<std::string, DecisionArm>* arms) {
   const auto oracle = arms->find(kOracleArm);
   if (oracle == arms->end()) return;
   for (auto& [name, arm] : *arms) {
-    arm.expected = reports::MeanInterval(Expected(arm));
-    arm.regret = reports::MeanInterval(Less(Costs(arm), Costs(oracle->second)));
-    arm.expected_regret = reports::MeanInterval(Less(Expected(arm), Expected(oracle->second)));
+    arm.expected = MeanInterval(Expected(arm));
+    arm.regret = MeanInterval(Less(Costs(arm), Costs(oracle->second)));
+    arm.expected_regret = MeanInterval(Less(Expected(arm), Expected(oracle->second)));
   }
 }
 
@@ -131,14 +131,14 @@ ArmComparison Compare(const DecisionArm& imagination, const std::string& name,
   ArmComparison comparison;
   comparison.arm = name;
   const std::vector<double> costs = Less(Costs(imagination), Costs(other));
-  comparison.cost = reports::MeanInterval(costs);
-  comparison.t_free_p_value = reports::SignFlipPValue(costs, rng.Fork(0));
+  comparison.cost = MeanInterval(costs);
+  comparison.t_free_p_value = SignFlipPValue(costs, rng.Fork(0));
   if (imagination.expected) {
     const std::vector<double> expected = Less(Expected(imagination), Expected(other));
-    comparison.expected = reports::MeanInterval(expected);
-    comparison.expected_p_value = reports::SignFlipPValue(expected, rng.Fork(1));
+    comparison.expected = MeanInterval(expected);
+    comparison.expected_p_value = SignFlipPValue(expected, rng.Fork(1));
   }
-  reports::PairedCounts signs;
+  PairedCounts signs;
   signs.num_pairs = comparison.success.num_pairs = static_cast<int>(costs.size());
   for (std::size_t i = 0; i < costs.size(); ++i) {
     const ArmTask &mine = imagination.tasks[i], &its = other.tasks[i];
@@ -148,7 +148,7 @@ ArmComparison Compare(const DecisionArm& imagination, const std::string& name,
     comparison.success.only_second += its.success && !mine.success ? 1 : 0;
     comparison.num_differ += mine.motion_set != its.motion_set ? 1 : 0;
   }
-  comparison.sign_p_value = reports::McNemarPValue(signs);
+  comparison.sign_p_value = McNemarPValue(signs);
   return comparison;
 }
 

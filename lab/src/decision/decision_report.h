@@ -8,7 +8,7 @@
 
 #include "lab/src/decision/calibration.h"
 #include "lab/src/decision/decision.h"
-#include "reports/text/statistics.h"
+#include "lab/src/statistics.h"
 
 namespace hires::lab {
 
@@ -33,13 +33,13 @@ struct ArmTask {
 /// One arm over all tasks, at one scale of prices.
 struct DecisionArm {
   std::vector<ArmTask> tasks;
-  reports::Interval cost;     ///< [s] mean with Student's t interval
-  reports::Interval success;  ///< share with the exact interval
+  Interval cost;     ///< [s] mean with Student's t interval
+  Interval success;  ///< share with the exact interval
   int falls{0};
   // None without an oracle.
-  std::optional<reports::Interval> expected;         ///< [s] mean expected cost
-  std::optional<reports::Interval> regret;           ///< [s] cost less the oracle's
-  std::optional<reports::Interval> expected_regret;  ///< [s] by expected costs
+  std::optional<Interval> expected;         ///< [s] mean expected cost
+  std::optional<Interval> regret;           ///< [s] cost less the oracle's
+  std::optional<Interval> expected_regret;  ///< [s] by expected costs
   double simulated_seconds{0.0};            ///< [s] of all plays behind its decisions
   double wall_seconds{0.0};                 ///< [s] likewise
   double processor_seconds{0.0};            ///< [s] likewise
@@ -49,12 +49,12 @@ struct DecisionArm {
 /// Imagination against another arm: differences are imagination - other.
 struct ArmComparison {
   std::string arm;
-  reports::Interval cost;                     ///< [s] Student's t
+  Interval cost;                     ///< [s] Student's t
   double t_free_p_value{1.0};        ///< of SignFlipPValue
   double sign_p_value{1.0};          ///< exact: cheaper as often as dearer
-  std::optional<reports::Interval> expected;  ///< [s] Student's t of expected costs; none without oracle
+  std::optional<Interval> expected;  ///< [s] Student's t of expected costs; none without oracle
   double expected_p_value{1.0};      ///< of SignFlipPValue
-  reports::PairedCounts success;              ///< first: imagination
+  PairedCounts success;              ///< first: imagination
   int num_differ{0};                 ///< tasks in which both chose differently
 };
 
@@ -76,20 +76,20 @@ struct CalibrationReport {
   int num_durations{0};      ///< predicted successes that succeeded
   std::vector<int> pit;      ///< ten equal bins
   TestResult pit_uniform;
-  reports::Interval duration_coverage;  ///< of the middle 90 % of imagined durations
+  Interval duration_coverage;  ///< of the middle 90 % of imagined durations
   struct Group {
     std::string name;
     int num_steps{0}, num_success{0};
     double predicted{0.0};  ///< mean share
-    reports::Interval success;       ///< of what happened, exact
+    Interval success;       ///< of what happened, exact
     BrierParts brier;
   };
   std::vector<Group> groups;  ///< by motion set, then by load and motion set
   // Against the oracle's plays; empty without.
   int num_actions{0};          ///< load, route, height and motion set
-  reports::Interval correlation;        ///< Pearson's
+  Interval correlation;        ///< Pearson's
   double rank_violation{0.0};  ///< mean maximum
-  reports::Interval success_coverage;   ///< intervals of success that hold the share of the oracle's plays
+  Interval success_coverage;   ///< intervals of success that hold the share of the oracle's plays
 };
 
 struct DecisionReport {

@@ -2,15 +2,14 @@
 #include <cmath>
 #include <limits>
 
-#include "lab/src/seed.h"
 #include "hires/base/error.h"
-#include "hires/base/failure_block.h"
 #include "hires/base/hash.h"
 #include "hires/base/param_reader.h"
 #include "hires/base/rng.h"
 #include "hires/base/text.h"
-#include "lab/src/decision/decision.h"
 #include "hires/world/fall_code.h"
+#include "lab/src/decision/decision.h"
+#include "lab/src/seed.h"
 
 namespace hires::lab {
 namespace {
@@ -46,6 +45,13 @@ double TorsoHeight(const imagination::ImaginationSetup& setup, const std::string
   std::vector<std::string> names;
   for (const auto& entry : postures) names.push_back(entry.first);
   throw base::ConfigError(base::UnknownName("torso posture", posture, names));
+}
+
+/// Whether a code says what became of things (failure.h, the first block), and not of the robot,
+/// its way or the plan.
+bool IsOfThings(FailureCode code) {
+  constexpr int kLastOfThings = 99;
+  return code != FailureCode::kNone && static_cast<int>(code) <= kLastOfThings;
 }
 
 }  // namespace
@@ -137,7 +143,7 @@ imagination::Prices PricesOf(const DecisionTask& task, const imagination::Prices
                              double scale) {
   imagination::Prices own = imagination::Scaled(prices, scale);
   for (auto& [code, price] : own.of) {
-    if (base::IsOfThings(code)) price *= task.price_factor;
+    if (IsOfThings(code)) price *= task.price_factor;
   }
   own.deadline = task.deadline.value_or(std::numeric_limits<double>::infinity());
   return own;

@@ -14,12 +14,12 @@ using nlohmann::ordered_json;
 constexpr char kTruthOfSame[] =
     "same is imagination's own model: it tests the plumbing, not whether decisions are right";
 
-std::string IntervalText(const reports::Interval& interval, int digits = 1) {
+std::string IntervalText(const Interval& interval, int digits = 1) {
   return fmt::format("{:.{}f} ({:.{}f} .. {:.{}f})", interval.estimate, digits, interval.lower,
                      digits, interval.upper, digits);
 }
 
-std::string IntervalText(const std::optional<reports::Interval>& interval) {
+std::string IntervalText(const std::optional<Interval>& interval) {
   return interval ? IntervalText(*interval) : "-";
 }
 
@@ -65,16 +65,16 @@ std::string ComparisonTable(const DecisionReport& report, const ScaledVerdict& v
                     fmt::format("{:.3g}", c.sign_p_value), IntervalText(c.expected),
                     c.expected ? fmt::format("{:.3g}", c.expected_p_value) : "-",
                     fmt::format("{} / {}", c.success.only_first, c.success.only_second),
-                    fmt::format("{:.3g}", reports::McNemarPValue(c.success))});
+                    fmt::format("{:.3g}", McNemarPValue(c.success))});
   }
   return "\n" + reports::FormatTable(rows);
 }
 
-ordered_json IntervalToJson(const reports::Interval& interval) {
+ordered_json IntervalToJson(const Interval& interval) {
   return {{"mean", interval.estimate}, {"lower", interval.lower}, {"upper", interval.upper}};
 }
 
-ordered_json IntervalToJson(const std::optional<reports::Interval>& interval) {
+ordered_json IntervalToJson(const std::optional<Interval>& interval) {
   return interval ? IntervalToJson(*interval) : ordered_json();
 }
 
@@ -134,7 +134,7 @@ ordered_json ComparisonToJson(const ArmComparison& c) {
            c.expected ? ordered_json(c.expected_p_value) : ordered_json()},
           {"success_only_imagination", c.success.only_first},
           {"success_only_other", c.success.only_second},
-          {"success_p_value", reports::McNemarPValue(c.success)}};
+          {"success_p_value", McNemarPValue(c.success)}};
 }
 
 ordered_json VerdictToJson(const ScaledVerdict& verdict) {

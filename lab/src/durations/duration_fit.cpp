@@ -58,7 +58,7 @@ double ErrorLeftOut(DurationModel model, const DurationRows& rows) {
     const DurationFit fit = FitDurations(model, OtherRoutes(rows, row.route));
     errors.push_back(std::abs(fit.At(row.played) - row.measured));
   }
-  return reports::Mean(errors);
+  return base::Mean(errors);
 }
 
 std::size_t BestWithout(const std::vector<DurationPredictor>& predictors,
@@ -90,13 +90,13 @@ void SumUpErrors(const DurationRows& rows, LeftOutPredictions* out) {
       if (rows[r].route != fold.route) continue;
       errors.push_back(std::abs(out->predicted[r] - rows[r].measured));
     }
-    by_route.push_back(reports::Mean(errors));
+    by_route.push_back(base::Mean(errors));
     all.insert(all.end(), errors.begin(), errors.end());
   }
-  out->mean_error = reports::Mean(all);
+  out->mean_error = base::Mean(all);
   out->largest_error =
       std::isnan(out->mean_error) ? kNone : *std::max_element(all.begin(), all.end());
-  out->error = reports::MeanInterval(by_route);
+  out->error = MeanInterval(by_route);
 }
 
 }  // namespace

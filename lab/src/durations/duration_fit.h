@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "reports/text/statistics.h"
+#include "lab/src/statistics.h"
 
 // Predicting how long an action takes on a robot from how long it takes when it is played, with
 // numbers that are fitted on other routes only.
@@ -62,7 +62,7 @@ struct LeftOutPredictions {
   std::vector<DurationFold> folds;
   double mean_error{0.0};     ///< [s] of absolute errors
   double largest_error{0.0};  ///< [s]
-  reports::Interval error;             ///< of the mean; routes count as independent, rows of one do not
+  Interval error;             ///< of the mean; routes count as independent, rows of one do not
 
   const DurationFold& FoldOf(const std::string& route) const;
 };

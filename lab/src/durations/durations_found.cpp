@@ -22,7 +22,7 @@ TimedRuns TimedOf(const Rollouts& rollouts) {
 }  // namespace
 
 double TimedRuns::mean() const {
-  return durations.empty() ? std::numeric_limits<double>::quiet_NaN() : reports::Mean(durations);
+  return durations.empty() ? std::numeric_limits<double>::quiet_NaN() : base::Mean(durations);
 }
 
 FoundDurations::FoundDurations(const DurationsConfig& durations, const DurationPlays& plays)

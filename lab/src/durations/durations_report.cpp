@@ -5,9 +5,9 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 
-#include "lab/src/durations/durations_found.h"
 #include "hires/base/text.h"
 #include "hires/imagination/evidence.h"
+#include "lab/src/durations/durations_found.h"
 
 namespace hires::lab {
 namespace {
@@ -24,7 +24,7 @@ std::vector<std::string> LineOfMeans(const FoundDurations& found, std::size_t r)
     const TimedRuns& timed = found.At(p, r);
     reached += timed.durations.size();
     runs += timed.runs;
-    means.push_back(WithSigma(timed.mean(), reports::Deviation(timed.durations)));
+    means.push_back(WithSigma(timed.mean(), Deviation(timed.durations)));
   }
   std::vector<std::string> line{DurationName(row), DurationRoute(row),
                                 fmt::format("{} of {}", reached, runs)};
@@ -59,7 +59,7 @@ void AddMeans(const FoundDurations& found, Findings* findings) {
   for (std::size_t r = 0; r < rows.size(); ++r) {
     const TimedRuns& timed = found.At(0, r);
     const double sigma = timed.durations.empty() ? std::numeric_limits<double>::quiet_NaN()
-                                                 : reports::Deviation(timed.durations);
+                                                 : Deviation(timed.durations);
     findings->measures.push_back({"mean_" + KeyOf(rows[r]), timed.mean()});
     findings->measures.push_back({"sigma_" + KeyOf(rows[r]), sigma});
   }
@@ -80,7 +80,7 @@ PlayedErrors ErrorsOf(const FoundDurations& found, const DurationAction& action,
     errors.push_back(std::abs(found.MeanOf(planner, r, reading) - expected));
     out.largest = WorseOf(errors.back(), out.largest);
   }
-  out.mean = errors.empty() ? std::numeric_limits<double>::quiet_NaN() : reports::Mean(errors);
+  out.mean = errors.empty() ? std::numeric_limits<double>::quiet_NaN() : base::Mean(errors);
   return out;
 }
 

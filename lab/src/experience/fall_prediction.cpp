@@ -129,9 +129,9 @@ ordered_json FeatureJson(const Feature& feature, const std::vector<ExperienceRun
     hits.push_back(reports::NumberOrNull(point.hits));
   }
   return {{"feature", feature.name},
-          {"area", reports::IntervalJson(AreaInterval(StrataOf(runs, MotionSetsOf(experiences)), rng))},
+          {"area", IntervalJson(AreaInterval(StrataOf(runs, MotionSetsOf(experiences)), rng))},
           {"area_within",
-           reports::IntervalJson(AreaIntervalWithin(MotionSetsToCompare(experiences, feature), rng))},
+           IntervalJson(AreaIntervalWithin(MotionSetsToCompare(experiences, feature), rng))},
           {"judged",
            {{"threshold", reports::NumberOrNull(judged.threshold)},
             {"hits", reports::NumberOrNull(judged.hits)},

@@ -139,12 +139,12 @@ ordered_json TryOne(const std::string& name, bool is_causal, const Filter& filte
     }
   }
   const auto root = [&](double squares) { return std::sqrt(squares / errors.count); };
-  const reports::Interval area = AreaInterval(StrataOf(scores, kinds), rng);
+  const Interval area = AreaInterval(StrataOf(scores, kinds), rng);
   return {{"filter", name},
           {"causal", is_causal},
           {"rms_error", {{"v", root(errors.v)}, {"a", root(errors.a)}, {"j", root(errors.j)}}},
           {"delay", knowledge::kExperiencePeriod * errors.delay / errors.stretches},
-          {"separation", reports::IntervalJson(area)}};
+          {"separation", IntervalJson(area)}};
 }
 
 }  // namespace

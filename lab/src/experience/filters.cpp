@@ -5,7 +5,7 @@
 
 #include "base/averages.h"
 #include "hires/geometry/angles.h"
-#include "reports/text/statistics.h"
+#include "lab/src/statistics.h"
 
 namespace hires::lab {
 namespace {
@@ -56,7 +56,7 @@ double Correlation(const std::vector<double>& a, double mean_a, const std::vecto
 std::vector<double> MovingAverage(const std::vector<double>& signal, std::size_t window,
                                   bool is_causal) {
   return OverWindows(signal, window, is_causal,
-                     [](const std::vector<double>* values) { return reports::Mean(*values); });
+                     [](const std::vector<double>* values) { return base::Mean(*values); });
 }
 
 std::vector<double> MovingMedian(const std::vector<double>& signal, std::size_t window,
@@ -88,7 +88,7 @@ std::vector<double> Filtered(const std::vector<double>& signal, const SecondOrde
 }
 
 std::vector<double> Autocorrelation(const std::vector<double>& signal, std::size_t max_lag) {
-  const double mean = reports::Mean(signal);
+  const double mean = base::Mean(signal);
   std::vector<double> correlation(max_lag + 1, 0.0);
   const double whole = Correlation(signal, mean, signal, mean, 0);
   if (whole == 0.0) return correlation;
@@ -112,7 +112,7 @@ std::vector<double> CentralDifferences(const std::vector<double>& signal, double
 
 std::size_t DelayOf(const std::vector<double>& signal, const std::vector<double>& later,
                     std::size_t max_lag) {
-  const double mean_a = reports::Mean(signal), mean_b = reports::Mean(later);
+  const double mean_a = base::Mean(signal), mean_b = base::Mean(later);
   std::size_t best = 0;
   double most = Correlation(signal, mean_a, later, mean_b, 0);
   for (std::size_t lag = 1; lag <= max_lag; ++lag) {

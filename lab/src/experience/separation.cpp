@@ -133,7 +133,7 @@ double AreaOf(const BinnedRun& run) {
 
 /// @param area_of  the area of one resample, which comes as a sum of runs for each stratum.
 template <typename Area>
-reports::Interval ResampledInterval(double estimate, const std::vector<std::vector<BinnedRun>>& strata,
+Interval ResampledInterval(double estimate, const std::vector<std::vector<BinnedRun>>& strata,
                            base::Rng rng, const Area& area_of) {
   std::vector<double> areas;
   std::vector<BinnedRun> resample(strata.size());
@@ -181,7 +181,7 @@ double AreaUnderCurve(const std::vector<RunScores>& runs) {
   return all > 0.0 ? area / all : std::numeric_limits<double>::quiet_NaN();
 }
 
-reports::Interval AreaInterval(const Strata& strata, base::Rng rng) {
+Interval AreaInterval(const Strata& strata, base::Rng rng) {
   std::vector<RunScores> all;
   for (const std::vector<RunScores>& runs : strata) all.insert(all.end(), runs.begin(), runs.end());
   const std::vector<double> edges = EdgesOfBins(all);
@@ -195,7 +195,7 @@ reports::Interval AreaInterval(const Strata& strata, base::Rng rng) {
                            });
 }
 
-reports::Interval AreaIntervalWithin(const Strata& strata, base::Rng rng) {
+Interval AreaIntervalWithin(const Strata& strata, base::Rng rng) {
   WeightedArea whole;
   std::vector<std::vector<BinnedRun>> binned;
   for (const std::vector<RunScores>& runs : strata) {

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "hires/base/rng.h"
-#include "reports/text/statistics.h"
+#include "lab/src/statistics.h"
 
 // How well a number tells two kinds of moments apart, where moments of one run are not independent.
 namespace hires::lab {
@@ -30,12 +30,12 @@ double AreaUnderCurve(const std::vector<RunScores>& runs);
 
 /// The area under the curve of all runs together, with the 2.5 % and 97.5 % percentiles over
 /// kAreaResamples resamples of whole runs.
-reports::Interval AreaInterval(const Strata& strata, base::Rng rng);
+Interval AreaInterval(const Strata& strata, base::Rng rng);
 
 /// Likewise of how often a positive has the larger number than a negative of its own stratum: areas
 /// of the strata, weighted by their positives; strata that lack positives or negatives are left
 /// out.
-reports::Interval AreaIntervalWithin(const Strata& strata, base::Rng rng);
+Interval AreaIntervalWithin(const Strata& strata, base::Rng rng);
 
 struct RocPoint {
   double threshold{0.0}, false_alarms{0.0}, hits{0.0};  ///< shares

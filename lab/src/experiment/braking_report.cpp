@@ -6,7 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "lab/src/experiment/braking.h"
-#include "reports/text/statistics.h"
+#include "lab/src/statistics.h"
 
 // What stops that were played come to.
 namespace hires::lab {
@@ -41,7 +41,7 @@ std::string MotionText(const BrakingMotion& motion) {
 
 std::vector<std::string> StopRow(const BrakingPlay& play, const Summary& summary) {
   const BrakingCell& cell = play.cell;
-  const reports::Interval share = reports::ShareInterval(summary.falls, summary.num);
+  const Interval share = ShareInterval(summary.falls, summary.num);
   return {cell.load,
           MotionText(cell.motion),
           cell.way.name,
@@ -49,9 +49,9 @@ std::vector<std::string> StopRow(const BrakingPlay& play, const Summary& summary
           fmt::format("{:.3f} .. {:.3f}", share.lower, share.upper),
           fmt::format("{:.3f}", summary.max_tilt),
           fmt::format("{:.4f}", summary.max_slide),
-          fmt::format("{:.3f} ({:.3f})", reports::Mean(summary.distances), summary.max_distance),
+          fmt::format("{:.3f} ({:.3f})", base::Mean(summary.distances), summary.max_distance),
           fmt::format("{:.3f}", cell.stated_distance),
-          fmt::format("{:.2f} ({:.2f})", reports::Mean(summary.times), summary.max_time),
+          fmt::format("{:.2f} ({:.2f})", base::Mean(summary.times), summary.max_time),
           fmt::format("{:.2f}", cell.stated_time)};
 }
 
@@ -109,8 +109,8 @@ struct Worst {
     max_distance = std::max(max_distance, summary.max_distance);
     if (cell.motion.angular != 0.0) return;  // the distance is that of an arc
     distance_error =
-        std::max(distance_error, std::abs(reports::Mean(summary.distances) - cell.stated_distance));
-    time_error = std::max(time_error, std::abs(reports::Mean(summary.times) - cell.stated_time));
+        std::max(distance_error, std::abs(base::Mean(summary.distances) - cell.stated_distance));
+    time_error = std::max(time_error, std::abs(base::Mean(summary.times) - cell.stated_time));
   }
 };
 

@@ -7,10 +7,10 @@
 #include <string>
 #include <vector>
 
-#include "loop/achieve.h"
-#include "reports/text/statistics.h"
 #include "hires/simulation/truth_record.h"
 #include "hires/world/world.h"
+#include "lab/src/statistics.h"
+#include "loop/achieve.h"
 
 // The project's hypothesis: a robot that imagines critical steps before it does them does its tasks
 // more surely. Measured with the whole system, on equal hidden truths with and without imagination.

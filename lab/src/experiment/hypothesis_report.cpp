@@ -8,10 +8,10 @@
 #include <nlohmann/json.hpp>
 #include <tuple>
 
-#include "reports/text/known_number.h"
 #include "hires/base/check.h"
 #include "hires/base/text.h"
 #include "lab/src/experiment/report.h"
+#include "reports/text/known_number.h"
 #include "reports/text/report_table.h"
 
 namespace hires::lab {
@@ -23,13 +23,13 @@ constexpr char kMethod[] =
     "score interval for the difference of paired shares, 95 % [Tango 1998, Statistics in Medicine "
     "17:891-908]";
 
-reports::PairedCounts PairsOf(const std::vector<HypothesisRun>& runs, int num_pairs) {
+PairedCounts PairsOf(const std::vector<HypothesisRun>& runs, int num_pairs) {
   std::map<int, std::pair<int, int>> successes;  // with, without
   for (const HypothesisRun& run : runs) {
     auto& [with, without] = successes[run.run];
     (run.imagines ? with : without) += run.success ? 1 : 0;
   }
-  reports::PairedCounts pairs;
+  PairedCounts pairs;
   pairs.num_pairs = num_pairs;
   for (const auto& [run, pair] : successes) {
     pairs.only_first += pair.first > pair.second ? 1 : 0;
@@ -61,8 +61,8 @@ ordered_json PairedDurationJson(const std::vector<HypothesisRun>& runs,
                                 bool (*counts)(const HypothesisRun&)) {
   const std::vector<double> differences = DurationDifferences(runs, counts);
   constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
-  const reports::Interval mean =
-      differences.empty() ? reports::Interval{kNone, kNone, kNone} : reports::MeanInterval(differences);
+  const Interval mean =
+      differences.empty() ? Interval{kNone, kNone, kNone} : MeanInterval(differences);
   return {{"pairs", differences.size()},
           {"mean", reports::NumberOrNull(mean.estimate)},
           {"lower", reports::NumberOrNull(mean.lower)},
@@ -166,12 +166,12 @@ HypothesisArm SumUpArm(const std::vector<HypothesisRun>& runs, bool imagines) {
     replans.push_back(run.replans);
     walls.push_back(run.imagination_wall);
   }
-  arm.success = reports::ShareInterval(arm.successes, arm.runs);
-  arm.duration_mean = reports::Mean(durations);
-  arm.duration_sd = reports::Deviation(durations);
-  arm.steps = reports::Mean(steps);
-  arm.replans = reports::Mean(replans);
-  arm.imagination_wall = reports::Mean(walls);
+  arm.success = ShareInterval(arm.successes, arm.runs);
+  arm.duration_mean = base::Mean(durations);
+  arm.duration_sd = Deviation(durations);
+  arm.steps = base::Mean(steps);
+  arm.replans = base::Mean(replans);
+  arm.imagination_wall = base::Mean(walls);
   return arm;
 }
 
@@ -187,7 +187,7 @@ HypothesisReport SumUpHypothesis(const HypothesisSetting& setting,
   HIRES_CHECK(report.with.runs == setting.runs && report.without.runs == setting.runs,
               "a run is missing, or there twice");
   report.pairs = PairsOf(runs, setting.runs);
-  report.difference = reports::PairedScoreInterval(report.pairs);
+  report.difference = PairedScoreInterval(report.pairs);
   report.runs = std::move(runs);
   return report;
 }
@@ -196,16 +196,16 @@ std::string HypothesisText(const HypothesisReport& report) {
   const HypothesisSetting& setting = report.setting;
   std::string text = fmt::format("hypothesis: {}, {} runs each, seed {}, {}\n\n", setting.scenario,
                                  setting.runs, setting.seed, HowPlayed(setting));
-  text += reports::FormatTable({{"imagination", "succeeded (95 %)", "falls", "duration", "steps", "repairs",
-                        "imagining", "in time", "broke down"},
-                       Row("with", report.with),
-                       Row("without", report.without)});
+  text += reports::FormatTable({{"imagination", "succeeded (95 %)", "falls", "duration", "steps",
+                                 "repairs", "imagining", "in time", "broke down"},
+                                Row("with", report.with),
+                                Row("without", report.without)});
   text += fmt::format(
       "\nsuccess with - without: {:+.2f} ({:+.2f} .. {:+.2f}); {} runs succeeded only with, {} "
       "only "
       "without; p = {:.3g} (McNemar's exact test)\n{}\n",
       report.difference.estimate, report.difference.lower, report.difference.upper,
-      report.pairs.only_first, report.pairs.only_second, reports::McNemarPValue(report.pairs), kMethod);
+      report.pairs.only_first, report.pairs.only_second, McNemarPValue(report.pairs), kMethod);
   text += RulesText(report);
   const std::string failures = FailureLines(report.runs);
   return failures.empty() ? text : text + '\n' + failures;
@@ -242,7 +242,7 @@ ordered_json ToJson(const HypothesisReport& report, const std::string& command) 
             {"upper", report.difference.upper},
             {"only_with", report.pairs.only_first},
             {"only_without", report.pairs.only_second},
-            {"p_value", reports::McNemarPValue(report.pairs)},
+            {"p_value", McNemarPValue(report.pairs)},
             {"method", kMethod}}},
           {"paired_duration", PairedDurationJson(report.runs, IsComplete)},
           {"paired_duration_of_successes", PairedDurationJson(report.runs, IsSuccess)},

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "lab/src/experiment/hypothesis.h"
-#include "reports/text/statistics.h"
+#include "lab/src/statistics.h"
 
 namespace hires::lab {
 
@@ -28,7 +28,7 @@ struct HypothesisArm {
   int runs{0}, complete{0}, successes{0};
   int falls{0};                                 ///< of all objects in all runs
   std::map<std::string, int> broken_rules;      ///< complete runs that broke a rule of the judge
-  reports::Interval success;                             ///< share, with the exact 95 % interval
+  Interval success;                             ///< share, with the exact 95 % interval
   double duration_mean{0.0}, duration_sd{0.0};  ///< [s]; sd divides by n
   double steps{0.0}, replans{0.0};              ///< means
   int dispatched{0}, in_time{0};                ///< imaginations, see HypothesisRun
@@ -40,8 +40,8 @@ struct HypothesisReport {
   HypothesisSetting setting;
   std::vector<HypothesisRun> runs;  ///< by run, with imagination first
   HypothesisArm with, without;
-  reports::PairedCounts pairs;   ///< of successes; first: with imagination
-  reports::Interval difference;  ///< of the shares of success, with - without: PairedScoreInterval
+  PairedCounts pairs;   ///< of successes; first: with imagination
+  Interval difference;  ///< of the shares of success, with - without: PairedScoreInterval
 };
 
 /// @pre every run is there with and without imagination.  @throws std::logic_error if broken.

@@ -4,10 +4,10 @@
 #include <map>
 #include <nlohmann/json.hpp>
 
-#include "lab/src/experiment/kinds.h"
 #include "base/parallel.h"
 #include "hires/base/text.h"
-#include "reports/text/statistics.h"
+#include "lab/src/experiment/kinds.h"
+#include "lab/src/statistics.h"
 
 namespace hires::lab {
 namespace {
@@ -58,7 +58,7 @@ class LegTally {
             fmt::format("{:.3f} rad", max_yaw_error),
             fmt::format("{}", beyond),
             fmt::format("{:.3f} m", clearance),
-            fmt::format("{:.1f} ± {:.1f} s", reports::Mean(durations), reports::Deviation(durations)),
+            fmt::format("{:.1f} ± {:.1f} s", base::Mean(durations), Deviation(durations)),
             reasons};
   }
 
@@ -115,7 +115,7 @@ std::vector<Measure> MeasuresOf(const LegTally& all, const std::map<std::string,
           {"max_distance", all.max_distance},
           {"max_yaw_error", all.max_yaw_error},
           {"min_clearance", all.clearance},
-          {"mean_duration", reports::Mean(all.durations)},
+          {"mean_duration", base::Mean(all.durations)},
           {"min_visits", static_cast<double>(min_visits)}};
 }
 

@@ -2,11 +2,11 @@
 
 #include <nlohmann/json.hpp>
 
-#include "lab/src/experiment/kinds.h"
 #include "base/parallel.h"
 #include "hires/base/text.h"
-#include "reports/text/statistics.h"
 #include "hires/imagination/evidence.h"
+#include "lab/src/experiment/kinds.h"
+#include "lab/src/statistics.h"
 
 namespace hires::lab {
 namespace {
@@ -36,16 +36,16 @@ int NumFailed(const Rollouts& rollouts) {
   return failed;
 }
 
-reports::Interval ShakingDifference(const std::vector<Rollouts>& rollouts) {
+Interval ShakingDifference(const std::vector<Rollouts>& rollouts) {
   std::vector<double> differences;
   for (std::size_t i = 0; i < rollouts[0].size(); ++i) {
     differences.push_back(ShakingShare(rollouts[0][i]) - ShakingShare(rollouts[1][i]));
   }
-  return reports::MeanInterval(differences);
+  return MeanInterval(differences);
 }
 
-reports::PairedCounts FallCounts(const std::vector<Rollouts>& rollouts) {
-  reports::PairedCounts counts;
+PairedCounts FallCounts(const std::vector<Rollouts>& rollouts) {
+  PairedCounts counts;
   counts.num_pairs = static_cast<int>(rollouts[0].size());
   for (std::size_t i = 0; i < rollouts[0].size(); ++i) {
     const bool first = rollouts[0][i].falls > 0, second = rollouts[1][i].falls > 0;
@@ -65,7 +65,7 @@ std::vector<std::string> SetRow(const std::string& motion_set, const Rollouts& r
                                                   imagination::IntervalKind::kClopperPearson);
   return {motion_set,
           fmt::format("{}", n),
-          fmt::format("{:.4f}", reports::Mean(shares)),
+          fmt::format("{:.4f}", base::Mean(shares)),
           fmt::format("{:.4f}", counts.shaking / std::max(1.0, double(counts.total()))),
           fmt::format("{:.4f}", falls.share),
           fmt::format("{:.4f} .. {:.4f}", falls.lower, falls.upper),
@@ -74,7 +74,7 @@ std::vector<std::string> SetRow(const std::string& motion_set, const Rollouts& r
           fmt::format("{:.1f} ± {:.1f} s", evidence.duration.mean, evidence.duration.sd)};
 }
 
-std::vector<std::string> DifferenceRow(const std::string& what, const reports::Interval& difference,
+std::vector<std::string> DifferenceRow(const std::string& what, const Interval& difference,
                                        const std::string& method) {
   return {what,
           fmt::format("{:.4f}", difference.estimate),
@@ -84,20 +84,20 @@ std::vector<std::string> DifferenceRow(const std::string& what, const reports::I
           method};
 }
 
-TextTable DifferenceTable(const PairedConfig& paired, const reports::Interval& shaking,
-                          const reports::PairedCounts& falls) {
+TextTable DifferenceTable(const PairedConfig& paired, const Interval& shaking,
+                          const PairedCounts& falls) {
   TextTable table{"Paired differences, " + paired.motion_sets[0] + " - " + paired.motion_sets[1],
                   {{"", "difference", "lower", "upper", "excludes 0", "interval at 95 %"}}};
   table.rows.push_back(
       DifferenceRow("share of shaking samples", shaking, "Student's t of paired differences"));
   table.rows.push_back(
-      DifferenceRow("share of rollouts with falls", reports::PairedShareDifference(falls),
+      DifferenceRow("share of rollouts with falls", PairedShareDifference(falls),
                     fmt::format("exact, given the discordant pairs {} : {} (McNemar p {:.2g})",
-                                falls.only_first, falls.only_second, reports::McNemarPValue(falls))));
+                                falls.only_first, falls.only_second, McNemarPValue(falls))));
   return table;
 }
 
-void AddInterval(const std::string& name, const reports::Interval& interval, std::vector<Measure>* to) {
+void AddInterval(const std::string& name, const Interval& interval, std::vector<Measure>* to) {
   to->push_back({name, interval.estimate});
   to->push_back({name + "_lower", interval.lower});
   to->push_back({name + "_upper", interval.upper});
@@ -139,20 +139,20 @@ std::optional<std::vector<Rollouts>> PlayPaired(const PairedConfig& paired,
 
 Findings SumUpPaired(const PairedConfig& paired, const std::vector<Rollouts>& rollouts) {
   Findings findings;
-  const reports::Interval shaking = ShakingDifference(rollouts);
-  const reports::PairedCounts falls = FallCounts(rollouts);
+  const Interval shaking = ShakingDifference(rollouts);
+  const PairedCounts falls = FallCounts(rollouts);
   TextTable sets{fmt::format("{} -> {}", paired.from, paired.to),
                  {{"motion set", "rollouts", "shaking, mean share", "pooled", "with falls",
                    "interval at 95 %", "failed", "confidence", "duration"}}};
   findings.measures.push_back({"pairs", static_cast<double>(falls.num_pairs)});
   AddInterval("shaking_difference", shaking, &findings.measures);
-  AddInterval("fall_difference", reports::PairedShareDifference(falls), &findings.measures);
-  findings.measures.push_back({"fall_p_value", reports::McNemarPValue(falls)});
+  AddInterval("fall_difference", PairedShareDifference(falls), &findings.measures);
+  findings.measures.push_back({"fall_p_value", McNemarPValue(falls)});
   for (std::size_t s = 0; s < 2; ++s) {
     const std::string& name = paired.motion_sets[s];
     const double n = rollouts[s].size();
     sets.rows.push_back(SetRow(name, rollouts[s]));
-    findings.measures.push_back({"shaking_share_" + name, reports::Mean(ShakingShares(rollouts[s]))});
+    findings.measures.push_back({"shaking_share_" + name, base::Mean(ShakingShares(rollouts[s]))});
     findings.measures.push_back({"fall_share_" + name, NumFallen(rollouts[s]) / n});
     findings.measures.push_back({"failed_" + name, static_cast<double>(NumFailed(rollouts[s]))});
     for (std::size_t i = 0; i < rollouts[s].size(); ++i) {

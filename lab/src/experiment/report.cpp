@@ -7,10 +7,10 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "reports/text/known_number.h"
 #include "hires/base/error.h"
 #include "hires/base/hash.h"
 #include "hires/base/text.h"
+#include "reports/text/known_number.h"
 #include "reports/text/report_table.h"
 
 namespace hires::lab {
@@ -58,7 +58,7 @@ std::string CsvField(const ordered_json& value) {
 ordered_json IntervalsToJson(const std::vector<NamedInterval>& intervals) {
   ordered_json json = ordered_json::object();
   for (const auto& [name, interval] : intervals) {
-    json[name] = reports::IntervalJson(interval);
+    json[name] = IntervalJson(interval);
   }
   return json;
 }

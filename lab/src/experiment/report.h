@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "hires/base/param_reader.h"
-#include "reports/text/statistics.h"
+#include "lab/src/statistics.h"
 
 namespace hires::lab {
 
@@ -19,7 +19,7 @@ struct Measure {
 /// A number with its 95 % interval, by name. Where it is a measure, too, both have one name.
 struct NamedInterval {
   std::string name;
-  reports::Interval interval;
+  Interval interval;
 };
 
 /// What must hold about a measure for the experiment to count as passed. A measure that is no

@@ -3,12 +3,12 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
-#include "lab/src/experiment/kinds.h"
-#include "lab/src/experiment/topple_shares.h"
-#include "hires/base/check.h"
 #include "base/parallel.h"
+#include "hires/base/check.h"
 #include "hires/base/text.h"
 #include "hires/imagination/evidence.h"
+#include "lab/src/experiment/kinds.h"
+#include "lab/src/experiment/topple_shares.h"
 
 namespace hires::lab {
 namespace {
@@ -63,12 +63,12 @@ TextTable CountsTable(const ToppleLoopConfig& loop, const std::vector<Pair>& pai
 }
 
 /// "0.02931 (0.02609 .. 0.03284)"
-std::string EstimateText(const reports::Interval& interval, int decimals) {
+std::string EstimateText(const Interval& interval, int decimals) {
   return fmt::format("{0:.{3}f} ({1:.{3}f} .. {2:.{3}f})", interval.estimate, interval.lower,
                      interval.upper, decimals);
 }
 
-const reports::Interval& IntervalNamed(const std::string& name,
+const Interval& IntervalNamed(const std::string& name,
                               const std::vector<NamedInterval>& intervals) {
   const auto found =
       std::find_if(intervals.begin(), intervals.end(),

@@ -2,30 +2,30 @@
 
 #include <utility>
 
-#include "reports/text/statistics.h"
+#include "lab/src/statistics.h"
 
 namespace hires::lab {
 namespace {
 
 using imagination::OutcomeCounts;
 
-reports::Interval IntervalOfShare(const ResampledCounts& set, const CountedEvent& event,
+Interval IntervalOfShare(const ResampledCounts& set, const CountedEvent& event,
                          const CountRate& rate) {
   std::vector<double> shares;
   for (const LoopCounts& resample : set.resamples) {
     shares.push_back(ShareOf(resample.*rate.counts, event));
   }
-  return reports::PercentileInterval(ShareOf(set.all.*rate.counts, event), std::move(shares));
+  return PercentileInterval(ShareOf(set.all.*rate.counts, event), std::move(shares));
 }
 
-reports::Interval IntervalOfRatio(const ResampledCounts& first, const ResampledCounts& second,
+Interval IntervalOfRatio(const ResampledCounts& first, const ResampledCounts& second,
                          const CountedEvent& event, const CountRate& rate) {
   std::vector<double> ratios;
   for (std::size_t i = 0; i < first.resamples.size(); ++i) {
     ratios.push_back(
         RatioOf(first.resamples[i].*rate.counts, second.resamples[i].*rate.counts, event));
   }
-  return reports::PercentileInterval(RatioOf(first.all.*rate.counts, second.all.*rate.counts, event),
+  return PercentileInterval(RatioOf(first.all.*rate.counts, second.all.*rate.counts, event),
                             std::move(ratios));
 }
 

@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "hires/base/process.h"
-#include "hires/base/process_watch.h"
 #include "lab/src/experiment/hypothesis.h"
+#include "lab/src/graph/process_watch.h"
 
 // What a process needs that plays one run through a graph of nodes of its own.
 namespace hires_ros {
@@ -56,7 +56,7 @@ class RunLimits {
   hires::base::ChildProcess* graph_;
   hires::base::StopSignals* stop_;
   double begin_;
-  std::optional<hires::base::BreakdownWatch> processes_;
+  std::optional<hires::lab::BreakdownWatch> processes_;
   std::string outcome_, reason_;
   bool is_time_over_{false};
 };

@@ -5,10 +5,10 @@
 #include <algorithm>
 #include <utility>
 
-#include "lab/src/ladder/own_rungs.h"
-#include "lab/src/ladder/rungs.h"
 #include "hires/base/check.h"
 #include "hires/base/error.h"
+#include "lab/src/ladder/own_rungs.h"
+#include "lab/src/ladder/rungs.h"
 
 namespace hires::lab {
 namespace {
@@ -47,7 +47,7 @@ LadderPair PairOf(int threads, const RungPlan& plan, const std::vector<Measured>
 }
 
 LadderOwn OwnOf(std::string id, std::string title, std::string unit, std::vector<double> values) {
-  const reports::Interval mean = reports::MeanInterval(values);
+  const Interval mean = MeanInterval(values);
   return {std::move(id), std::move(title), std::move(unit), std::move(values), mean};
 }
 

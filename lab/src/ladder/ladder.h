@@ -10,7 +10,7 @@
 
 #include "base/parallel.h"
 #include "lab/src/experiment/experiment.h"
-#include "reports/text/statistics.h"
+#include "lab/src/statistics.h"
 
 namespace hires::lab {
 
@@ -45,7 +45,7 @@ struct LadderPair {
   int threads{1};  ///< on which each way was played at once
   int rounds{0};   ///< pieces of work of each repeat, the same for both ways
   LadderSide before, after;
-  reports::Interval ratio;  ///< after / before: t interval of the paired logarithms
+  Interval ratio;  ///< after / before: t interval of the paired logarithms
 };
 
 /// A step of the dissertation. Its unit is the real-time factor, simulated / wall seconds
@@ -66,7 +66,7 @@ struct LadderRung {
 struct LadderOwn {
   std::string id, title, unit;
   std::vector<double> values;
-  reports::Interval mean;  ///< t interval over repeats
+  Interval mean;  ///< t interval over repeats
 };
 
 struct LadderReport {

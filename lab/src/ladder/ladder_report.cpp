@@ -3,8 +3,8 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "reports/text/known_number.h"
 #include "lab/src/ladder/ladder.h"
+#include "reports/text/known_number.h"
 #include "reports/text/report_table.h"
 
 namespace hires::lab {
@@ -16,7 +16,7 @@ ordered_json SideJson(const LadderSide& side) {
   return {{"what", side.what},
           {"facts", side.facts},
           {"values", side.values},
-          {"mean", reports::Mean(side.values)}};
+          {"mean", base::Mean(side.values)}};
 }
 
 ordered_json PairJson(const LadderPair& pair) {
@@ -24,7 +24,7 @@ ordered_json PairJson(const LadderPair& pair) {
           {"rounds", pair.rounds},
           {"before", SideJson(pair.before)},
           {"after", SideJson(pair.after)},
-          {"ratio", reports::IntervalJson(pair.ratio)}};
+          {"ratio", IntervalJson(pair.ratio)}};
 }
 
 ordered_json RungJson(const LadderRung& rung) {
@@ -57,14 +57,14 @@ std::string Short(double value) {
   return std::abs(value) >= 100.0 ? fmt::format("{:.0f}", value) : fmt::format("{:.3g}", value);
 }
 
-std::string IntervalText(const reports::Interval& interval) {
+std::string IntervalText(const Interval& interval) {
   return fmt::format("{} ({} .. {})", Short(interval.estimate), Short(interval.lower),
                      Short(interval.upper));
 }
 
 std::vector<std::string> Row(const std::string& title, const LadderPair& pair,
                              const std::string& published) {
-  return {title, Short(reports::Mean(pair.before.values)), Short(reports::Mean(pair.after.values)),
+  return {title, Short(base::Mean(pair.before.values)), Short(base::Mean(pair.after.values)),
           IntervalText(pair.ratio), published};
 }
 

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "hires/base/check.h"
 #include "base/parallel.h"
+#include "hires/base/check.h"
 
 namespace hires::lab::ladder {
 namespace {
@@ -121,14 +121,14 @@ std::optional<std::vector<Measured>> MeasureByTurns(const std::vector<const Way*
   return measured;
 }
 
-reports::Interval RatioOf(const std::vector<double>& before, const std::vector<double>& after) {
+Interval RatioOf(const std::vector<double>& before, const std::vector<double>& after) {
   HIRES_CHECK(before.size() == after.size(), "ratios are those of pairs");
   std::vector<double> logarithms;
   for (std::size_t i = 0; i < before.size(); ++i) {
     HIRES_CHECK(before[i] > 0.0 && after[i] > 0.0, "a ratio needs positive numbers");
     logarithms.push_back(std::log(after[i] / before[i]));
   }
-  const reports::Interval of_log = reports::MeanInterval(logarithms);
+  const Interval of_log = MeanInterval(logarithms);
   return {std::exp(of_log.estimate), std::exp(of_log.lower), std::exp(of_log.upper)};
 }
 

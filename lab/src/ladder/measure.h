@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "lab/src/ladder/ladder.h"
 #include "hires/world/world.h"
+#include "lab/src/ladder/ladder.h"
 
 namespace hires::lab::ladder {
 
@@ -64,7 +64,7 @@ std::optional<std::vector<Measured>> MeasureByTurns(const std::vector<const Way*
 
 /// after / before with the t interval of the paired logarithms.
 /// @pre equally many, all positive.
-reports::Interval RatioOf(const std::vector<double>& before, const std::vector<double>& after);
+Interval RatioOf(const std::vector<double>& before, const std::vector<double>& after);
 
 /// [m] the largest distance between objects of one name.
 double Apart(const world::WorldState& a, const world::WorldState& b);

@@ -22,18 +22,18 @@ constexpr double kBoxGoal = 0.01, kBoxGoal95 = 0.025;  // [m]
 
 RecognitionGoal ShareGoal(const char* name, const RecognitionReport& report,
                           const ThingShare& share, double bound) {
-  const std::vector<reports::ClusterCounts> tables = CountsOf(report.score.things(), share);
-  if (reports::SumOf(tables).num_all == 0) {
+  const std::vector<ClusterCounts> tables = CountsOf(report.score.things(), share);
+  if (SumOf(tables).num_all == 0) {
     return {name, std::numeric_limits<double>::quiet_NaN(), bound, false};
   }
-  const reports::Interval interval = reports::ClusteredShareInterval(tables);
+  const Interval interval = ClusteredShareInterval(tables);
   RecognitionGoal goal{name, interval.estimate, bound, false, interval};
   if (goal.verdict() == GoalVerdict::kUndecided)
     goal.enough_tables = TablesToDecide(tables, report.tables, bound);
   return goal;
 }
 
-bool HoldsBound(const reports::Interval& interval, double bound) {
+bool HoldsBound(const Interval& interval, double bound) {
   return interval.lower < bound && interval.upper >= bound;
 }
 
@@ -93,9 +93,9 @@ const ThingShare kUnknown{"unknown", IsUnknown, IsRight};
 const ThingShare kUnknownOfFound{"unknown_of_found", IsUnknownAndFound, IsRight};
 const ThingShare kMisnamed{"misnamed_of_found", WasFound, IsMisnamed};
 
-std::vector<reports::ClusterCounts> CountsOf(const std::vector<ThingVerdict>& things,
+std::vector<ClusterCounts> CountsOf(const std::vector<ThingVerdict>& things,
                                     const ThingShare& share) {
-  std::vector<reports::ClusterCounts> tables;
+  std::vector<ClusterCounts> tables;
   for (const ThingVerdict& thing : things) {
     if (!share.is_in(thing)) continue;
     if (thing.table >= static_cast<int>(tables.size())) tables.resize(thing.table + 1);
@@ -105,13 +105,13 @@ std::vector<reports::ClusterCounts> CountsOf(const std::vector<ThingVerdict>& th
   return tables;
 }
 
-std::optional<int> TablesToDecide(const std::vector<reports::ClusterCounts>& tables, int num_tables,
+std::optional<int> TablesToDecide(const std::vector<ClusterCounts>& tables, int num_tables,
                                   double bound) {
   constexpr int kMost = 100'000;
   const auto is_decided = [&](int times) {
-    std::vector<reports::ClusterCounts> repeated;
+    std::vector<ClusterCounts> repeated;
     for (int i = 0; i < times; ++i) repeated.insert(repeated.end(), tables.begin(), tables.end());
-    return !HoldsBound(reports::ClusteredShareInterval(repeated), bound);
+    return !HoldsBound(ClusteredShareInterval(repeated), bound);
   };
   const int most = kMost / num_tables;
   int too_few = 0, enough = 1;

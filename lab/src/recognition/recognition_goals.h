@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "lab/src/recognition/recognition_experiment.h"
-#include "reports/text/statistics.h"
+#include "lab/src/statistics.h"
 
 namespace hires::lab {
 
@@ -19,14 +19,14 @@ extern const ThingShare kFound, kNamed, kNamedOfFound, kOwnLabel, kUnknown, kUnk
     kMisnamed;
 
 /// By table.
-std::vector<reports::ClusterCounts> CountsOf(const std::vector<perception::ThingVerdict>& things,
+std::vector<ClusterCounts> CountsOf(const std::vector<perception::ThingVerdict>& things,
                                     const ThingShare& share);
 
 /// How many tables it takes until the interval of the share does not hold the bound, if all go as
 /// these did: the counts are repeated as a whole.
 /// @param num_tables  that were looked at, also those without a case.
 /// @return nothing where no number up to 100,000 does.
-std::optional<int> TablesToDecide(const std::vector<reports::ClusterCounts>& tables, int num_tables,
+std::optional<int> TablesToDecide(const std::vector<ClusterCounts>& tables, int num_tables,
                                   double bound);
 
 /// Undecided: the 95 % interval of a share holds the bound.
@@ -41,7 +41,7 @@ struct RecognitionGoal {
   double value{0.0};      ///< share or [m]; not a number where nothing tells it
   double bound{0.0};      ///< likewise
   bool is_length{false};  ///< [m] of at most the bound; else a share of at least the bound
-  std::optional<reports::Interval> interval{};  ///< of the value; without one it is judged as it is
+  std::optional<Interval> interval{};  ///< of the value; without one it is judged as it is
   /// How many tables decide it, if others go as those that were looked at; where it is undecided,
   /// and so many are found.
   std::optional<int> enough_tables{};

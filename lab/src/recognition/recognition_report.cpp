@@ -5,13 +5,13 @@
 #include <map>
 #include <nlohmann/json.hpp>
 
-#include "reports/text/known_number.h"
+#include "hires/base/text.h"
+#include "hires/geometry/angles.h"
 #include "lab/src/recognition/recognition_boxes.h"
 #include "lab/src/recognition/recognition_goals.h"
-#include "hires/base/text.h"
-#include "reports/text/report_table.h"
-#include "hires/geometry/angles.h"
 #include "lab/src/trial/random_tables.h"
+#include "reports/text/known_number.h"
+#include "reports/text/report_table.h"
 
 namespace hires::lab {
 namespace {
@@ -20,7 +20,8 @@ using nlohmann::ordered_json;
 using perception::RecognitionSums;
 using perception::ThingVerdict;
 
-constexpr double kBands[] = {0.0, 1.1, 1.3, 1.5, 1.7, 2.0, 2.5, 3.0, 3.5, 4.0, 9.9};  // [m] from the camera
+constexpr double kBands[] = {0.0, 1.1, 1.3, 1.5, 1.7, 2.0,
+                             2.5, 3.0, 3.5, 4.0, 9.9};  // [m] from the camera
 const char* const kTorso[] = {"down", "half way", "up"};
 
 /// Some of the things, and which.
@@ -77,23 +78,23 @@ std::string LeftOutRowsText(const std::vector<ThingVerdict>& things) {
 }
 
 std::string BareShare(const std::vector<ThingVerdict>& things, const ThingShare& share) {
-  const reports::ClusterCounts sum = reports::SumOf(CountsOf(things, share));
+  const ClusterCounts sum = SumOf(CountsOf(things, share));
   return reports::NumberText(100.0 * sum.num_hits / sum.num_all, 1);
 }
 
 std::string ShareText(const std::vector<ThingVerdict>& things, const ThingShare& share) {
-  const std::vector<reports::ClusterCounts> tables = CountsOf(things, share);
-  if (reports::SumOf(tables).num_all == 0) return "-";
-  const reports::Interval interval = reports::ClusteredShareInterval(tables);
+  const std::vector<ClusterCounts> tables = CountsOf(things, share);
+  if (SumOf(tables).num_all == 0) return "-";
+  const Interval interval = ClusteredShareInterval(tables);
   return fmt::format("{:.1f} ({:.1f} .. {:.1f})", 100 * interval.estimate, 100 * interval.lower,
                      100 * interval.upper);
 }
 
 ordered_json ShareToJson(const std::vector<ThingVerdict>& things, const ThingShare& share) {
-  const std::vector<reports::ClusterCounts> tables = CountsOf(things, share);
-  const reports::ClusterCounts sum = reports::SumOf(tables);
+  const std::vector<ClusterCounts> tables = CountsOf(things, share);
+  const ClusterCounts sum = SumOf(tables);
   if (sum.num_all == 0) return {{"hits", 0}, {"all", 0}, {"lower", nullptr}, {"upper", nullptr}};
-  const reports::Interval interval = reports::ClusteredShareInterval(tables);
+  const Interval interval = ClusteredShareInterval(tables);
   return {{"hits", sum.num_hits},
           {"all", sum.num_all},
           {"lower", interval.lower},
@@ -150,7 +151,8 @@ std::string GoalText(const RecognitionGoal& goal) {
                     : "";
   return fmt::format("goal: {} {} {:.0f} {}: {}, {}\n", goal.name,
                      goal.is_length ? "at most" : "at least", scale * goal.bound, unit,
-                     reports::NumberText(scale * goal.value, 1) + interval, ToString(goal.verdict()));
+                     reports::NumberText(scale * goal.value, 1) + interval,
+                     ToString(goal.verdict()));
 }
 
 ordered_json GoalsToJson(const RecognitionReport& report) {
@@ -171,8 +173,9 @@ std::string ReportText(const RecognitionReport& report) {
   std::vector<std::vector<std::string>> rows{
       {"things of 400 points or more", "number", "found [%]",
        "named rightly up to equal geometry [%]", "... of found", "by its own label [%]",
-       "unknown so called [%]", "... of found", "wrong name, of found [%]", "error by the sensor alone: median / 95 % [mm]",
-       "... with the camera's mount", "turned [deg]"}};
+       "unknown so called [%]", "... of found", "wrong name, of found [%]",
+       "error by the sensor alone: median / 95 % [mm]", "... with the camera's mount",
+       "turned [deg]"}};
   for (const Part& part : PartsOf(things)) rows.push_back(RowOf(part));
   std::string text = fmt::format(
       "{} random tables from seed {} on, simulated; 95 % intervals in brackets, by table [Korn, "
@@ -201,8 +204,7 @@ ordered_json ToJson(const RecognitionReport& report) {
     const RecognitionSums sums = perception::SumsOf(part.things);
     ordered_json one{{"part", part.name}};
     for (const ThingShare* share :
-         {&kFound, &kNamed, &kNamedOfFound, &kOwnLabel, &kUnknown, &kUnknownOfFound,
-          &kMisnamed})
+         {&kFound, &kNamed, &kNamedOfFound, &kOwnLabel, &kUnknown, &kUnknownOfFound, &kMisnamed})
       one[share->name] = ShareToJson(part.things, *share);
     one["median_error"] = reports::NumberOrNull(sums.median_error);
     one["error_95"] = reports::NumberOrNull(sums.error_95);

@@ -3,10 +3,10 @@
 #include <functional>
 #include <nlohmann/json.hpp>
 
-#include "reports/text/known_number.h"
 #include "lab/src/recognition/torso_poses.h"
+#include "lab/src/statistics.h"
+#include "reports/text/known_number.h"
 #include "reports/text/report_table.h"
-#include "reports/text/statistics.h"
 
 namespace hires::lab {
 namespace {
@@ -42,21 +42,21 @@ std::vector<Pose> PosesOf(const TorsoPosesReport& report, int torso, int base) {
   return poses;
 }
 
-std::string IntervalText(const reports::Interval& value) {
+std::string IntervalText(const Interval& value) {
   return fmt::format("{:.2f} ({:.2f} .. {:.2f})", value.estimate, value.lower, value.upper);
 }
 
-reports::Interval IntervalOf(const TorsoPosesReport& report, int torso, int base, const Indicator& measure) {
-  return reports::BootstrapInterval(ByKind(report, PosesOf(report, torso, base), measure), base::Rng(1));
+Interval IntervalOf(const TorsoPosesReport& report, int torso, int base, const Indicator& measure) {
+  return BootstrapInterval(ByKind(report, PosesOf(report, torso, base), measure), base::Rng(1));
 }
 
 /// Of a measure at some poses less at others, thing by thing.
-reports::Interval DifferenceOf(const TorsoPosesReport& report, const std::vector<Pose>& first,
+Interval DifferenceOf(const TorsoPosesReport& report, const std::vector<Pose>& first,
                       const std::vector<Pose>& second, const Indicator& measure) {
   std::vector<double> one = ByKind(report, first, measure);
   const std::vector<double> other = ByKind(report, second, measure);
   for (std::size_t i = 0; i < one.size(); ++i) one[i] -= other[i];
-  return reports::BootstrapInterval(one, base::Rng(1));
+  return BootstrapInterval(one, base::Rng(1));
 }
 
 int NumGrasps(const TorsoPosesReport& report, const std::vector<Pose>& poses) {
@@ -70,7 +70,7 @@ int NumGrasps(const TorsoPosesReport& report, const std::vector<Pose>& poses) {
 
 struct Finding {
   std::string what;
-  reports::Interval difference;
+  Interval difference;
   double from;  ///< mean of what is subtracted
 };
 
@@ -79,14 +79,14 @@ std::vector<Finding> FindingsOf(const TorsoPosesReport& report) {
   const auto torso = [&](int t) { return PosesOf(report, t, -1); };
   std::vector<Finding> findings{
       {"recognition, torso down less up", DifferenceOf(report, torso(0), torso(up), Recognised),
-       reports::Mean(ByKind(report, torso(up), Recognised))},
+       base::Mean(ByKind(report, torso(up), Recognised))},
       {"grasp quality, torso up less down", DifferenceOf(report, torso(up), torso(0), Quality),
-       reports::Mean(ByKind(report, torso(0), Quality))}};
+       base::Mean(ByKind(report, torso(0), Quality))}};
   for (int base = 1; base < static_cast<int>(report.bases.size()); ++base) {
     findings.push_back(
         {fmt::format("recognition, base {} less default", report.bases[base]),
          DifferenceOf(report, PosesOf(report, -1, base), PosesOf(report, -1, 0), Recognised),
-         reports::Mean(ByKind(report, PosesOf(report, -1, 0), Recognised))});
+         base::Mean(ByKind(report, PosesOf(report, -1, 0), Recognised))});
   }
   return findings;
 }
@@ -137,15 +137,16 @@ ordered_json ToJson(const TorsoPosesReport& report) {
     }
     poses.push_back({{"torso", report.torsos[torso]},
                      {"base", report.bases[base]},
-                     {"recognition", reports::IntervalJson(IntervalOf(report, torso, base, Recognised))},
-                     {"grasp_quality", reports::IntervalJson(IntervalOf(report, torso, base, Quality))},
+                     {"recognition", IntervalJson(IntervalOf(report, torso, base, Recognised))},
+                     {"grasp_quality", IntervalJson(IntervalOf(report, torso, base, Quality))},
                      {"grasps", NumGrasps(report, {{torso, base}})},
                      {"kinds", kinds}});
   }
   for (const Finding& finding : FindingsOf(report))
-    findings.push_back({{"finding", finding.what},
-                        {"difference", reports::IntervalJson(finding.difference)},
-                        {"relative", reports::NumberOrNull(finding.difference.estimate / finding.from)}});
+    findings.push_back(
+        {{"finding", finding.what},
+         {"difference", IntervalJson(finding.difference)},
+         {"relative", reports::NumberOrNull(finding.difference.estimate / finding.from)}});
   return {{"schema", "hires/torso_poses"},
           {"version", 1},
           {"looks", report.looks},

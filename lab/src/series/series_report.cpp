@@ -123,7 +123,7 @@ std::string OutcomeTable(const SeriesReport& report) {
   Table table{{"outcome", "runs", "share", "95 % interval (Wilson)"}};
   const int all = static_cast<int>(report.runs.size());
   const auto add = [&](const std::string& what, int count) {
-    const reports::Interval share = reports::WilsonInterval(count, all);
+    const Interval share = WilsonInterval(count, all);
     table.push_back({what, std::to_string(count), fmt::format("{:.0f} %", 100.0 * share.estimate),
                      fmt::format("{:.0f} .. {:.0f} %", 100.0 * share.lower, 100.0 * share.upper)});
   };
@@ -235,7 +235,7 @@ std::vector<ChoiceShare> SharesByChoice(const SeriesReport& report) {
       share.group = group.name;
       share.choice = choice;
       share.members = MembersOf(report.series, group, static_cast<std::size_t>(choice));
-      share.share = reports::WilsonInterval(share.succeeded, share.played);
+      share.share = WilsonInterval(share.succeeded, share.played);
       shares.push_back(share);
     }
   }

@@ -8,7 +8,7 @@
 
 #include "lab/src/series/scenario_series.h"
 #include "lab/src/series/series_run.h"
-#include "reports/text/statistics.h"
+#include "lab/src/statistics.h"
 
 namespace hires::lab {
 
@@ -26,7 +26,7 @@ struct ChoiceShare {
   int choice{0};                     ///< from 0
   std::vector<std::string> members;  ///< what differs by it, with what it is: "poseTable1 hasX 1"
   int succeeded{0}, played{0};
-  reports::Interval share;  ///< of successes, Wilson's
+  Interval share;  ///< of successes, Wilson's
 };
 std::vector<ChoiceShare> SharesByChoice(const SeriesReport& report);
 

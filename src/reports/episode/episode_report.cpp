@@ -4,10 +4,10 @@
 #include <map>
 #include <nlohmann/json.hpp>
 
+#include "base/averages.h"
 #include "reports/episode/episode_compare.h"
 #include "reports/text/report_json.h"
 #include "reports/text/report_table.h"
-#include "reports/text/statistics.h"
 
 namespace hires::reports {
 namespace {
@@ -86,7 +86,7 @@ std::vector<double> DurationErrors(const std::vector<ComparedStep>& steps) {
 double MeanMagnitude(const std::vector<double>& values) {
   std::vector<double> magnitudes;
   for (const double value : values) magnitudes.push_back(std::abs(value));
-  return Mean(magnitudes);
+  return base::Mean(magnitudes);
 }
 
 }  // namespace
@@ -116,7 +116,7 @@ std::string EpisodeSummary(const std::vector<ComparedStep>& steps) {
   return text + fmt::format(
                     "\n{} durations: {:+.2f} s from what was imagined in the mean, {:.2f} s "
                     "in the mean of magnitudes\n",
-                    errors.size(), Mean(errors), MeanMagnitude(errors));
+                    errors.size(), base::Mean(errors), MeanMagnitude(errors));
 }
 
 ordered_json EpisodeJson(const std::vector<ComparedStep>& steps) {
@@ -125,7 +125,7 @@ ordered_json EpisodeJson(const std::vector<ComparedStep>& steps) {
   const std::vector<double> errors = DurationErrors(steps);
   return {{"steps", all},
           {"durations_compared", errors.size()},
-          {"duration_error_mean", Mean(errors)},
+          {"duration_error_mean", base::Mean(errors)},
           {"duration_error_magnitude", MeanMagnitude(errors)}};
 }
 

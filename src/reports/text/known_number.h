@@ -7,8 +7,6 @@
 #include <optional>
 #include <string>
 
-#include "reports/text/statistics.h"
-
 namespace hires::reports {
 
 /// What is not a finite number is not known: null.
@@ -17,12 +15,6 @@ inline nlohmann::ordered_json NumberOrNull(double value) {
 }
 inline nlohmann::ordered_json NumberOrNull(const std::optional<double>& value) {
   return value ? NumberOrNull(*value) : nlohmann::ordered_json(nullptr);
-}
-
-inline nlohmann::ordered_json IntervalJson(const Interval& interval) {
-  return {{"estimate", NumberOrNull(interval.estimate)},
-          {"lower", NumberOrNull(interval.lower)},
-          {"upper", NumberOrNull(interval.upper)}};
 }
 
 /// Likewise for people: "-".

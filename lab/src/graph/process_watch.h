@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-namespace hires::base {
+namespace hires::lab {
 
 /// A process that this one, or one that it started, has started.
 struct Descendant {
@@ -37,4 +37,4 @@ class BreakdownWatch {
   std::map<int, double> stopped_;  ///< [s] since when, by pid
 };
 
-}  // namespace hires::base
+}  // namespace hires::lab

@@ -5,7 +5,7 @@
 #include "base/averages.h"
 #include "hires/base/rng.h"
 
-namespace hires::reports {
+namespace hires::lab {
 
 using base::Mean;
 double Deviation(const std::vector<double>& values);  ///< divides by n, as the dissertation does
@@ -92,4 +92,4 @@ double McNemarPValue(const PairedCounts& counts);
 /// Appl. Genet. Mol. Biol. 9:39], so that the test keeps its level. 1 without differences.
 double SignFlipPValue(const std::vector<double>& differences, base::Rng rng);
 
-}  // namespace hires::reports
+}  // namespace hires::lab

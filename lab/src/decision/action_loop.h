@@ -11,7 +11,7 @@
 #include "loop/task_loop.h"
 #include "sim_robot/truth.h"
 
-namespace hires::loop {
+namespace hires::lab {
 
 /// One action that is to be done on the robot that stands in for a real one.
 struct ActionOrder {
@@ -35,7 +35,7 @@ struct ActionRun {
 /// gives the same bits.
 /// @param cancelled  asked every tick; may be empty.
 /// @return nothing when cancelled. An action that makes no sense ends at once, as kInvalidAction.
-std::optional<ActionRun> PlayAction(const LoopSetup& setup, const ActionOrder& order,
+std::optional<ActionRun> PlayAction(const loop::LoopSetup& setup, const ActionOrder& order,
                                     const std::function<bool()>& cancelled = {});
 
-}  // namespace hires::loop
+}  // namespace hires::lab

@@ -1,12 +1,12 @@
-#include "loop/action_loop.h"
+#include "lab/src/decision/action_loop.h"
 
 #include <gtest/gtest.h>
 
-namespace hires::loop::action_loop_test {
+namespace hires::lab::action_loop_test {
 namespace {
 
-const LoopSetup& TheSetup() {
-  static const LoopSetup setup(HIRES_SOURCE_DIR "/config/loop.yaml");
+const loop::LoopSetup& TheSetup() {
+  static const loop::LoopSetup setup(HIRES_SOURCE_DIR "/config/loop.yaml");
   return setup;
 }
 
@@ -42,4 +42,4 @@ TEST(ActionLoopTest, WhatMakesNoSenseEndsAtOnce) {
 }
 
 }  // namespace
-}  // namespace hires::loop::action_loop_test
+}  // namespace hires::lab::action_loop_test

@@ -1,4 +1,4 @@
-#include "reports/text/statistics.h"
+#include "lab/src/statistics.h"
 
 #include <algorithm>
 #include <boost/math/distributions/binomial.hpp>
@@ -10,7 +10,7 @@
 
 #include "hires/base/check.h"
 
-namespace hires::reports {
+namespace hires::lab {
 namespace {
 
 constexpr double kTail = 0.025;
@@ -258,4 +258,4 @@ double SignFlipPValue(const std::vector<double>& differences, base::Rng rng) {
                                      : ShareOfDrawnFlips(sizes, bound, &rng);
 }
 
-}  // namespace hires::reports
+}  // namespace hires::lab

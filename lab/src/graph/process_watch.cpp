@@ -1,4 +1,4 @@
-#include "hires/base/process_watch.h"
+#include "lab/src/graph/process_watch.h"
 
 #include <fmt/format.h>
 #include <unistd.h>
@@ -9,7 +9,7 @@
 
 #include "hires/base/text.h"
 
-namespace hires::base {
+namespace hires::lab {
 namespace {
 
 namespace fs = std::filesystem;
@@ -93,4 +93,4 @@ std::optional<std::string> BreakdownWatch::Broken(double now) {
   return std::nullopt;
 }
 
-}  // namespace hires::base
+}  // namespace hires::lab

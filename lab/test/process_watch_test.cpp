@@ -1,4 +1,4 @@
-#include "hires/base/process_watch.h"
+#include "lab/src/graph/process_watch.h"
 
 #include <gmock/gmock.h>
 
@@ -8,7 +8,7 @@
 
 #include "hires/base/process.h"
 
-namespace hires::base::process_watch_test {
+namespace hires::lab::process_watch_test {
 namespace {
 
 using ::testing::HasSubstr;
@@ -116,4 +116,4 @@ TEST_F(BreakdownWatchTest, AStoppedProcessIsNoticedAfterItsLimitAndOneThatGoesOn
 }
 
 }  // namespace
-}  // namespace hires::base::process_watch_test
+}  // namespace hires::lab::process_watch_test

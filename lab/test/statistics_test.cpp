@@ -1,4 +1,4 @@
-#include "reports/text/statistics.h"
+#include "lab/src/statistics.h"
 
 #include <gtest/gtest.h>
 
@@ -8,7 +8,7 @@
 #include <limits>
 #include <stdexcept>
 
-namespace hires::reports::statistics_test {
+namespace hires::lab::statistics_test {
 namespace {
 
 TEST(BootstrapIntervalTest, ItHoldsTheMeanAndStaysWithinTheValues) {
@@ -411,4 +411,4 @@ TEST(SignFlipPValueTest, DrawnSignsOfEqualSizesGiveTheSignTest) {
 }
 
 }  // namespace
-}  // namespace hires::reports::statistics_test
+}  // namespace hires::lab::statistics_test
