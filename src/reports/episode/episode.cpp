@@ -15,6 +15,17 @@ std::shared_ptr<const robot::Robot> RobotOf(const imagination::ImaginationSetup&
   return {setup.scene, &setup.scene->robot};
 }
 
+std::vector<std::string> BodyJointsOf(const robot::Robot& robot) {
+  std::vector<std::string> joints;
+  const auto& body = robot.profile.upper_body;
+  if (!body) return joints;
+  if (!body->torso_joint.empty()) joints.push_back(body->torso_joint);
+  for (const auto& [name, arm] : body->arms) {
+    joints.insert(joints.end(), arm.joints.begin(), arm.joints.end());
+  }
+  return joints;
+}
+
 }  // namespace
 
 std::string ToString(ActionFate fate) {
@@ -56,7 +67,8 @@ EpisodeBuilder::EpisodeBuilder(const imagination::ImaginationSetup& setup,
     : frames_(frames),
       period_(period),
       state_(RobotOf(setup), frames, setup.sensing.robot_state, map_to_world, std::move(tree)),
-      episodes_(1) {
+      episodes_(1),
+      body_joints_(BodyJointsOf(setup.scene->robot)) {
   if (!setup.scene->has_camera()) return;
   objects_ = std::make_unique<sensing::ObjectEstimator>(setup.scene->surroundings, RobotOf(setup),
                                                         setup.sensing.memory, &state_);
@@ -71,6 +83,7 @@ void EpisodeBuilder::OnOdometry(double stamp, const std::string& frame, const st
 
 void EpisodeBuilder::OnJoints(double stamp, const robot::JointReading& reading) {
   Note("joint states", state_.OnJoints(stamp, reading));
+  for (const auto& [name, position] : reading.positions) told_joints_.insert(name);
   Sample();
 }
 
@@ -127,6 +140,18 @@ std::string EpisodeBuilder::MissingText() const {
       return "the transform " + frames_.map + " -> " + frames_.odometry;
   }
   return "";
+}
+
+std::vector<std::string> EpisodeBuilder::UntoldJoints() const {
+  std::vector<std::string> untold;
+  for (const std::string& joint : body_joints_) {
+    if (told_joints_.count(joint) == 0) untold.push_back(joint);
+  }
+  return untold;
+}
+
+bool EpisodeBuilder::knows_joints() const {
+  return body_joints_.empty() || UntoldJoints().size() < body_joints_.size();
 }
 
 std::vector<Episode> EpisodeBuilder::Take() {
