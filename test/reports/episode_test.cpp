@@ -173,6 +173,24 @@ TEST(EpisodeTest, AnActionThatNobodyKnowsIsNamed) {
   EXPECT_THAT(robot.Steps().at(0).why_not, HasSubstr("make_tea"));
 }
 
+TEST(EpisodeTest, AGoalOrResultThatWasRecordedTwiceCountsOnce) {
+  Recording robot;
+  robot.Rest(1.0);
+  const double begin = robot.time;
+  for (int i = 0; i < 2; ++i) robot.builder.OnGoal("a", DriveTo(kTable), begin);
+  robot.Rest(1.0);
+  for (int i = 0; i < 2; ++i) {
+    robot.builder.OnResult("a", robot.time, 1.0, ActionFate::kSucceeded, {});
+  }
+  robot.builder.OnResult("b", robot.time, 1.0, ActionFate::kSucceeded, {});
+  robot.builder.OnGoal("a", DriveTo(kTable), robot.time);  // the same id, later: another one
+  const auto& dropped = robot.builder.dropped();
+  EXPECT_EQ(dropped.at("goals: recorded before"), 1);
+  EXPECT_EQ(dropped.at("results: recorded before"), 1);
+  EXPECT_EQ(dropped.at("results: their goal was not recorded"), 1);
+  EXPECT_THAT(robot.Steps(), SizeIs(2));
+}
+
 TEST(EpisodeTest, JointsOfArmsAndTorsoOfWhichNothingIsToldAreNamed) {
   Recording whole, partial, foreign;
   whole.Rest(1.0);

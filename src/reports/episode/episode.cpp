@@ -103,7 +103,12 @@ void EpisodeBuilder::OnKnownObjects(double stamp, const world::WorldState& known
 
 void EpisodeBuilder::OnGoal(const std::string& id, const base::ActionCall& action, double stamp) {
   if (!std::isfinite(stamp) || stamp <= 0.0) return Drop("goals", "its time is 0 or no number");
-  episodes_.back().actions.push_back({id, action, stamp, {}, 0.0, ActionFate::kUnknown, {}});
+  std::vector<RecordedAction>& actions = episodes_.back().actions;
+  const bool is_known = std::any_of(actions.begin(), actions.end(), [&](const auto& earlier) {
+    return earlier.id == id && earlier.begin == stamp;
+  });
+  if (is_known && !id.empty()) return Drop("goals", "recorded before");
+  actions.push_back({id, action, stamp, {}, 0.0, ActionFate::kUnknown, {}});
 }
 
 void EpisodeBuilder::OnResult(const std::string& id, double stamp, double duration, ActionFate fate,
@@ -112,7 +117,12 @@ void EpisodeBuilder::OnResult(const std::string& id, double stamp, double durati
   const auto action = std::find_if(actions.rbegin(), actions.rend(), [&](const auto& candidate) {
     return candidate.id == id && !candidate.end;
   });
-  if (action == actions.rend()) return Drop("results", "their goal was not recorded");
+  if (action == actions.rend()) {
+    const bool is_known = std::any_of(actions.begin(), actions.end(), [&](const auto& earlier) {
+      return earlier.id == id && earlier.end == stamp;
+    });
+    return Drop("results", is_known ? "recorded before" : "their goal was not recorded");
+  }
   if (!std::isfinite(stamp) || stamp < action->begin || !std::isfinite(duration)) {
     return Drop("results", "its time is before its goal's, or no number");
   }
