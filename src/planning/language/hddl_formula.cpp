@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <map>
 #include <utility>
 
@@ -30,8 +31,26 @@ Formula ReadParts(Kind kind, const Datum& datum, HddlScope* scope) {
   return formula;
 }
 
+bool IsComparison(const std::string& head) {
+  return head == "<" || head == ">" || head == "<=" || head == ">=";
+}
+
+bool IsNumeric(const Datum& datum) {
+  const auto is_value = [](const Datum& item) {
+    return item.IsList() || item.kind == Datum::Kind::kInteger || item.kind == Datum::Kind::kReal;
+  };
+  return std::any_of(datum.items.begin() + 1, datum.items.end(), is_value);
+}
+
+[[noreturn]] void FailOnNumbers(const Datum& datum, const HddlScope& scope) {
+  scope.spot.Fail(datum, fmt::format("{} compares numbers, which no condition can: functions say "
+                                     "what actions cost; write what matters as a predicate",
+                                     Excerpt(datum)));
+}
+
 Formula ReadEqual(const Datum& datum, HddlScope* scope) {
   RequireParts(*scope, datum, 2, "(= a b)");
+  if (IsNumeric(datum)) FailOnNumbers(datum, *scope);
   Formula formula;
   formula.kind = Kind::kEqual;
   formula.term = datum;
@@ -240,6 +259,7 @@ Formula ReadCondition(const Datum& datum, HddlScope* scope) {
   if (head == "forall") return ReadQuantifier(Kind::kForall, datum, scope);
   if (head == "exists") return ReadQuantifier(Kind::kExists, datum, scope);
   if (head == "=") return ReadEqual(datum, scope);
+  if (IsComparison(head)) FailOnNumbers(datum, *scope);
   if (IsSortWord(head) && scope->vocabulary->predicates.count(head) == 0) {
     return ReadSort(datum, scope);
   }

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cstring>
 
 #include "hires/base/keys.h"
 #include "hires/base/spelling.h"
@@ -11,6 +12,10 @@
 
 namespace hires::planning::hddl {
 namespace {
+
+// No name in a file begins with %.
+constexpr char kType[] = "%type-";
+constexpr char kValue[] = "%value-";
 
 // A chain of types costs the square of its length, and each object a fact for each of its types.
 constexpr std::size_t kMaxTypes = 1000;
@@ -277,14 +282,14 @@ int CheckArgument(const HddlSpot& spot, const Datum& argument, int wanted,
     const auto found = variables.find(argument.text);
     if (found != variables.end()) return found->second;
     spot.Fail(argument, base::UnknownName("variable", argument.text, base::KeysOf(variables)) +
-                            " Declare it among the parameters");
+                            "; declare it among the parameters");
   }
   const std::string& name = RequireName(spot, argument, "an object or a variable");
   const auto found = vocabulary->objects.find(name);
   if (found != vocabulary->objects.end()) return found->second;
   if (vocabulary->has_all_objects) {
     spot.Fail(argument, base::UnknownName("object", name, base::KeysOf(vocabulary->objects)) +
-                            " Declare it among the constants or objects");
+                            "; declare it among the constants or objects");
   }
   vocabulary->open_objects.push_back({name, wanted, argument.place, spot.construct});
   return wanted;
@@ -299,7 +304,7 @@ void CheckOpenObjects(const HddlSpot& spot, const std::string& domain_source,
     const auto found = vocabulary.objects.find(open.name);
     if (found == vocabulary.objects.end()) {
       named.Fail(at, base::UnknownName("object", open.name, base::KeysOf(vocabulary.objects)) +
-                         fmt::format(" Declare it among the constants, or among the objects of {}",
+                         fmt::format("; declare it among the constants, or among the objects of {}",
                                      spot.construct));
     }
     if (IsA(vocabulary, found->second, open.type)) continue;
@@ -311,10 +316,22 @@ void CheckOpenObjects(const HddlSpot& spot, const std::string& domain_source,
 }
 
 std::string TypePredicate(const HddlVocabulary& vocabulary, int type) {
-  return "%type-" + vocabulary.types[type].name;
+  return kType + vocabulary.types[type].name;
 }
 
-std::string ValuePredicate(const std::string& function) { return "%value-" + function; }
+std::string ValuePredicate(const std::string& function) { return kValue + function; }
+
+std::string AsWritten(const Datum& atom) {
+  const std::string head(atom.Head());
+  if (head.rfind(kType, 0) == 0 && atom.items.size() == 2) {
+    return fmt::format("({} - {})", ToString(atom.items[1]), head.substr(std::strlen(kType)));
+  }
+  if (head.rfind(kValue, 0) != 0 || atom.items.size() < 2) return ToString(atom);
+  Datum term = atom;
+  term.items[0] = MakeSymbol(head.substr(std::strlen(kValue)));
+  term.items.pop_back();
+  return fmt::format("(= {} number)", ToString(term));
+}
 
 std::vector<Datum> TypeFacts(const HddlSpot& spot, const HddlVocabulary& vocabulary,
                              const HddlVocabulary* known) {
