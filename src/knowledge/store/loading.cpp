@@ -1,10 +1,15 @@
 #include "hires/knowledge/loading.h"
 
+#include <fmt/format.h>
+
+#include <cmath>
 #include <set>
 #include <utility>
+#include <variant>
 
 #include "hires/base/error.h"
 #include "hires/base/text.h"
+#include "knowledge/fluents/store_check.h"
 
 namespace hires::knowledge {
 namespace {
@@ -29,6 +34,43 @@ std::vector<Fluent> FluentsToLoad(const KnowledgeFile& file, base::Rng rng, cons
   return fluents;
 }
 
+/// Roles of angles, which people who think in degrees give as such.
+bool IsAngle(const std::string& role) {
+  return role == "hasYaw" || role == "hasPitch" || role == "hasRoll";
+}
+
+void CheckAngles(const Fluent& fluent) {
+  constexpr double kTurn = 2.0 * M_PI + 0.01;  // [rad]
+  for (const Property& property : fluent.properties) {
+    const auto* angle = std::get_if<double>(&property.filler);
+    if (angle == nullptr || !IsAngle(property.role) || std::abs(*angle) <= kTurn) continue;
+    throw base::ConfigError(fmt::format(
+        "fluent '{}' of {}, property '{}': is {} rad, more than a turn; if these are "
+        "degrees, write {:.5g}",
+        fluent.instance, fluent.concept_name, property.role, *angle, *angle * M_PI / 180.0));
+  }
+}
+
+/// Tells of all fluents that cannot be, each with its place in the file.
+void CheckFluents(const KnowledgeFile& file, const Ontology& ontology) {
+  constexpr std::size_t kMostTold = 10;
+  std::vector<std::string> faults;
+  std::size_t num_faults = 0;
+  for (std::size_t i = 0; i < file.fluents.size(); ++i) {
+    try {
+      CheckFluent(file.fluents[i], ontology);
+      CheckAngles(file.fluents[i]);
+    } catch (const base::ConfigError& error) {
+      if (++num_faults > kMostTold) continue;
+      const std::string place = i < file.places.size() ? file.places[i] + ": " : "";
+      faults.push_back((file.source.empty() ? "" : file.source + ": ") + place + error.what());
+    }
+  }
+  if (faults.empty()) return;
+  if (num_faults > kMostTold) faults.push_back(fmt::format("and {} more", num_faults - kMostTold));
+  throw base::ConfigError(base::Join(faults, "\n"));
+}
+
 LoadSummary Summarize(const KnowledgeFile& file, std::size_t num_fluents,
                       const std::vector<Change>& changes) {
   LoadSummary summary;
@@ -44,6 +86,7 @@ LoadSummary Summarize(const KnowledgeFile& file, std::size_t num_fluents,
 LoadSummary Load(const KnowledgeFile& file, base::Rng rng, const Assertion& by, Store* store,
                  std::vector<Change>* changes) {
   try {
+    CheckFluents(file, store->ontology());
     const std::vector<Fluent> fluents = FluentsToLoad(file, rng, *store);
     std::vector<Change> made = store->Add(fluents, by);
     const LoadSummary summary = Summarize(file, fluents.size(), made);
