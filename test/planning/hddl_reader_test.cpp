@@ -207,6 +207,25 @@ TEST(HddlMethodTest, SubtasksMayBePartlyOrdered) {
   EXPECT_THAT(network.order, ElementsAre(Pair(0, 3), Pair(1, 3)));
 }
 
+TEST(HddlMethodTest, AListOfListsIsAConjunction) {
+  const std::string with = R"((:action a :parameters (?p - place)
+      :precondition (and (at ?p) (not (full))) :effect (and (not (at ?p)) (full)))
+    (:method m :parameters (?p - place) :task (go ?p) :precondition (and (at ?p) (full))
+      :subtasks (and (t1 (a ?p)) (t2 (go ?p))) :ordering (and (< t1 t2))
+      :constraints (and (not (= ?p dock)))))";
+  std::string without = with;
+  for (std::size_t at; (at = without.find("(and ")) != std::string::npos;) without.erase(at + 1, 4);
+  const Domain meant = World(with), read = World(without);
+  EXPECT_EQ(Text(read.operators.at(0).precondition.condition),
+            Text(meant.operators.at(0).precondition.condition));
+  EXPECT_EQ(Texts(read.operators.at(0).adds), Texts(meant.operators.at(0).adds));
+  EXPECT_EQ(Texts(read.operators.at(0).deletes), Texts(meant.operators.at(0).deletes));
+  EXPECT_EQ(MethodCondition(read), MethodCondition(meant));
+  const TaskNetwork& network = read.methods.at(0).branches.at(0).subtasks;
+  EXPECT_THAT(Tasks(network), ElementsAre("(!a ?p)", "(go ?p)"));
+  EXPECT_THAT(network.order, ElementsAre(Pair(0, 1)));
+}
+
 TEST(HddlMethodTest, OrderedSubtasksFollowOneAnother) {
   const Domain domain = World(R"(
     (:method a :parameters () :task (go dock)

@@ -21,11 +21,12 @@ void RequireParts(const HddlScope& scope, const Datum& datum, std::size_t count,
   scope.spot.Fail(datum, fmt::format("{} came, wanted {}", Excerpt(datum), wanted));
 }
 
-Formula ReadParts(Kind kind, const Datum& datum, HddlScope* scope) {
+/// @param first  of the items that are parts.
+Formula ReadParts(Kind kind, const Datum& datum, HddlScope* scope, std::size_t first = 1) {
   Formula formula;
   formula.kind = kind;
   formula.place = datum.place;
-  for (std::size_t i = 1; i < datum.items.size(); ++i) {
+  for (std::size_t i = first; i < datum.items.size(); ++i) {
     formula.parts.push_back(ReadCondition(datum.items[i], scope));
   }
   return formula;
@@ -245,6 +246,7 @@ bool IsSortWord(std::string_view word) {
 Formula ReadCondition(const Datum& datum, HddlScope* scope) {
   RequireList(scope->spot, datum, "a condition such as (near ?a ?b) or (and ...)");
   if (datum.items.empty()) return MakeSequence({});
+  if (LacksAnd(datum)) return ReadParts(Kind::kSequence, datum, scope, 0);
   const std::string head(datum.Head());
   if (head == "and") return ReadParts(Kind::kSequence, datum, scope);
   if (head == "or") return ReadParts(Kind::kOr, datum, scope);
