@@ -119,6 +119,20 @@ TEST_F(LoadingTest, AllFluentsThatCannotBeAreToldAtOnceWithTheirPlaces) {
   }
 }
 
+TEST_F(LoadingTest, WhatAFileLinksToAsOneConceptAndDeclaresAsAnotherIsRefused) {
+  const auto load = [&](const std::string& target, const std::string& concept_name) {
+    Store store(":memory:", test_support::RestaurantOntology());
+    const Fluent cup = test_support::MakeFluent("Mug", "mug1", {{"hasPose", "Pose", target}});
+    const Fluent other = test_support::MakeFluent(concept_name, "PoseMug1");
+    Load({{cup, other}, {}, {}}, base::Rng(1), At(0.0), &store);
+  };
+  EXPECT_NO_THROW(load("poseMug1", "Pose"));
+  EXPECT_NO_THROW(load("poseMug1", "SpatialEntity"));  // a wider word for it
+  EXPECT_NO_THROW(load("poseMug2", "Mug"));            // another file may say what that is
+  EXPECT_THROW(load("poseMug1", "Mug"), base::ConfigError);
+  EXPECT_THROW(load("mug1", "Pose"), base::ConfigError);
+}
+
 TEST_F(LoadingTest, AnglesOfMoreThanATurnAreRefusedAsDegrees) {
   Store store(":memory:", test_support::RestaurantOntology());
   const auto error = [&](double yaw) {

@@ -2,7 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
+#include <map>
 #include <set>
 #include <utility>
 #include <variant>
@@ -51,15 +53,48 @@ void CheckAngles(const Fluent& fluent) {
   }
 }
 
+/// The concepts that the file gives an instance, by its name in lower case.
+using ConceptsOf = std::multimap<std::string, std::string>;
+
+ConceptsOf ConceptsIn(const KnowledgeFile& file) {
+  ConceptsOf concepts;
+  for (const Fluent& fluent : file.fluents) {
+    concepts.emplace(base::ToLower(fluent.instance), fluent.concept_name);
+  }
+  return concepts;
+}
+
+/// What is linked to as a Pose and is a Mug a few lines further on was mistaken for its pose.
+void CheckLinks(const Fluent& fluent, const ConceptsOf& concepts, const Ontology& ontology) {
+  for (const Property& property : fluent.properties) {
+    const auto* target = std::get_if<std::string>(&property.filler);
+    if (target == nullptr || !property.IsLink()) continue;
+    const auto [first, last] = concepts.equal_range(base::ToLower(*target));
+    const Ontology::ConceptId type = ontology.Find(property.type);
+    const bool is_other = std::none_of(first, last, [&](const auto& entry) {
+      const Ontology::ConceptId own = ontology.Find(entry.second);
+      return own == Ontology::kUnknown || ontology.IsA(own, type) || ontology.IsA(type, own);
+    });
+    if (first == last || !is_other) continue;
+    throw base::ConfigError(fmt::format(
+        "fluent '{}' of {}, property '{}': links to '{}' as a {}, and this file says that it is "
+        "a {}; correct one of them",
+        fluent.instance, fluent.concept_name, property.role, *target, property.type,
+        first->second));
+  }
+}
+
 /// Tells of all fluents that cannot be, each with its place in the file.
 void CheckFluents(const KnowledgeFile& file, const Ontology& ontology) {
   constexpr std::size_t kMostTold = 10;
+  const ConceptsOf concepts = ConceptsIn(file);
   std::vector<std::string> faults;
   std::size_t num_faults = 0;
   for (std::size_t i = 0; i < file.fluents.size(); ++i) {
     try {
       CheckFluent(file.fluents[i], ontology);
       CheckAngles(file.fluents[i]);
+      CheckLinks(file.fluents[i], concepts, ontology);
     } catch (const base::ConfigError& error) {
       if (++num_faults > kMostTold) continue;
       const std::string place = i < file.places.size() ? file.places[i] + ": " : "";
