@@ -14,8 +14,8 @@ namespace hires::planning::hddl {
 namespace {
 
 // No name in a file begins with %.
-constexpr char kType[] = "%type-";
-constexpr char kValue[] = "%value-";
+constexpr char kTypePrefix[] = "%type-";
+constexpr char kValuePrefix[] = "%value-";
 
 // A chain of types costs the square of its length, and each object a fact for each of its types.
 constexpr std::size_t kMaxTypes = 1000;
@@ -316,19 +316,19 @@ void CheckOpenObjects(const HddlSpot& spot, const std::string& domain_source,
 }
 
 std::string TypePredicate(const HddlVocabulary& vocabulary, int type) {
-  return kType + vocabulary.types[type].name;
+  return kTypePrefix + vocabulary.types[type].name;
 }
 
-std::string ValuePredicate(const std::string& function) { return kValue + function; }
+std::string ValuePredicate(const std::string& function) { return kValuePrefix + function; }
 
 std::string AsWritten(const Datum& atom) {
   const std::string head(atom.Head());
-  if (head.rfind(kType, 0) == 0 && atom.items.size() == 2) {
-    return fmt::format("({} - {})", ToString(atom.items[1]), head.substr(std::strlen(kType)));
+  if (head.rfind(kTypePrefix, 0) == 0 && atom.items.size() == 2) {
+    return fmt::format("({} - {})", ToString(atom.items[1]), head.substr(std::strlen(kTypePrefix)));
   }
-  if (head.rfind(kValue, 0) != 0 || atom.items.size() < 2) return ToString(atom);
+  if (head.rfind(kValuePrefix, 0) != 0 || atom.items.size() < 2) return ToString(atom);
   Datum term = atom;
-  term.items[0] = MakeSymbol(head.substr(std::strlen(kValue)));
+  term.items[0] = MakeSymbol(head.substr(std::strlen(kValuePrefix)));
   term.items.pop_back();
   return fmt::format("(= {} number)", ToString(term));
 }
