@@ -599,6 +599,7 @@ INSTANTIATE_TEST_SUITE_P(
         After("(:method m)", {"bad.hddl:3:1: method 'm': :task is missing; add it"}),
         After("(:method m :task (goo dock))", {"task 'goo' is unknown", "'go'"}),
         After("(:method m :task (go))", {"task 'go' has 0 arguments", "declaration has 1"}),
+        After("(:method m :task (go ?p - place))", {"(go ?p - place) has types; write them in"}),
         After("(:method m :task (drive dock))", {"'drive' is an action"}),
         After("(:method m :task (go ?p))", {"is unknown; none is defined; declare it"}),
         After("(:method m :task (go dock)) (:method m :task (go dock))",

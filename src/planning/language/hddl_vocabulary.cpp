@@ -262,6 +262,11 @@ const HddlVocabulary::Signature& CheckTerm(const HddlSpot& spot, const Datum& te
     spot.Fail(term.items[0], base::UnknownName(kind, name, base::KeysOf(signatures)));
   }
   const HddlVocabulary::Signature& signature = found->second;
+  const auto is_dash = [](const Datum& item) { return item.IsSymbol("-"); };
+  if (std::any_of(term.items.begin(), term.items.end(), is_dash)) {
+    spot.Fail(term, fmt::format("{} has types; write them in :parameters, and the names alone here",
+                                Excerpt(term)));
+  }
   if (term.items.size() - 1 != signature.types.size()) {
     spot.Fail(term,
               fmt::format("{} '{}' has {} in {}, its declaration has {}; make them agree",
