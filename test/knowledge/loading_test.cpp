@@ -135,7 +135,7 @@ TEST_F(LoadingTest, WhatAFileLinksToAsOneConceptAndDeclaresAsAnotherIsRefused) {
 
 TEST_F(LoadingTest, AnglesOfMoreThanATurnAreRefusedAsDegrees) {
   Store store(":memory:", test_support::RestaurantOntology());
-  const auto error = [&](double yaw) {
+  const auto error = [&](const Filler& yaw) {
     Fluent pose = PoseAt("p1", 1.0);
     pose.properties.push_back({"hasYaw", "xsd:float", yaw});
     try {
@@ -149,6 +149,7 @@ TEST_F(LoadingTest, AnglesOfMoreThanATurnAreRefusedAsDegrees) {
   EXPECT_THAT(error(90.0), HasSubstr("is 90 rad, more than a turn; if these are degrees, write "
                                      "1.5708"));
   EXPECT_THAT(error(-180.0), HasSubstr("write -3.1416"));
+  EXPECT_THAT(error(std::int64_t{45}), HasSubstr("is 45 rad"));
 }
 
 TEST_F(LoadingTest, APoseNobodyKnowsIsNamedAndNothingGoesIn) {

@@ -44,12 +44,15 @@ bool IsAngle(const std::string& role) {
 void CheckAngles(const Fluent& fluent) {
   constexpr double kTurn = 2.0 * M_PI + 0.01;  // [rad]
   for (const Property& property : fluent.properties) {
-    const auto* angle = std::get_if<double>(&property.filler);
-    if (angle == nullptr || !IsAngle(property.role) || std::abs(*angle) <= kTurn) continue;
+    if (!IsAngle(property.role)) continue;
+    const auto* real = std::get_if<double>(&property.filler);
+    const auto* whole = std::get_if<std::int64_t>(&property.filler);
+    const double angle = real ? *real : whole ? static_cast<double>(*whole) : 0.0;
+    if (std::abs(angle) <= kTurn) continue;
     throw base::ConfigError(fmt::format(
         "fluent '{}' of {}, property '{}': is {} rad, more than a turn; if these are "
         "degrees, write {:.5g}",
-        fluent.instance, fluent.concept_name, property.role, *angle, *angle * M_PI / 180.0));
+        fluent.instance, fluent.concept_name, property.role, angle, angle * M_PI / 180.0));
   }
 }
 
