@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "hires/base/error.h"
+#include "knowledge/support/restaurant_world.h"
 #include "knowledge/support/store_world.h"
 
 namespace hires::knowledge::loading_test {
@@ -83,10 +84,72 @@ TEST_F(LoadingTest, WhatTheStoreRefusesIsSaidWithItsFileAndTheNearestName) {
     return std::string("no error");
   };
   EXPECT_EQ(error(),
-            "/home/me/rooms.yaml: fluent 'p1': concept 'Posse' is unknown; did you mean 'Pose'?");
+            "/home/me/rooms.yaml: document 1, line 1: fluent 'p1': concept 'Posse' is unknown; did "
+            "you mean 'Pose'?");
   file.source.clear();
+  file.places.clear();
   EXPECT_THAT(error(), ::testing::StartsWith("fluent 'p1'"));
   EXPECT_EQ(store_.last_sequence(), 0u);
+}
+
+std::string PoseText(const std::string& name, const std::string& property) {
+  return "---\n!Fluent\nClass_Instance: [Pose, " + name +
+         "]\nStartTime: [0, 0]\nFinishTime: [0, 0]\nProperties:\n  - " + property + "\n";
+}
+
+TEST_F(LoadingTest, AllFluentsThatCannotBeAreToldAtOnceWithTheirPlaces) {
+  std::string text = PoseText("p1", "[hasXX, \"xsd:float\", 1.0]") +
+                     PoseText("p2", "[hasX, \"xsd:float\", 1.0]") +
+                     PoseText("p3", "[hasX, \"xsd:string\", far]");
+  try {
+    LoadFile(ReadKnowledge(text, "rooms.yaml"));
+    FAIL() << "no error";
+  } catch (const base::ConfigError& error) {
+    EXPECT_THAT(error.what(), HasSubstr("rooms.yaml: document 1, line 2: fluent 'p1'"));
+    EXPECT_THAT(error.what(), HasSubstr("\nrooms.yaml: document 3, line 16: fluent 'p3'"));
+    EXPECT_THAT(error.what(), ::testing::Not(HasSubstr("'p2'")));
+  }
+  EXPECT_EQ(store_.last_sequence(), 0u);
+  for (int i = 0; i < 20; ++i) text += PoseText("q", "[hasY, Pose, p]");
+  try {
+    LoadFile(ReadKnowledge(text, "rooms.yaml"));
+    FAIL() << "no error";
+  } catch (const base::ConfigError& error) {
+    EXPECT_THAT(error.what(), ::testing::EndsWith("\nand 12 more"));
+  }
+}
+
+TEST_F(LoadingTest, WhatAFileLinksToAsOneConceptAndDeclaresAsAnotherIsRefused) {
+  const auto load = [&](const std::string& target, const std::string& concept_name) {
+    Store store(":memory:", test_support::RestaurantOntology());
+    const Fluent cup = test_support::MakeFluent("Mug", "mug1", {{"hasPose", "Pose", target}});
+    const Fluent other = test_support::MakeFluent(concept_name, "PoseMug1");
+    Load({{cup, other}, {}, {}}, base::Rng(1), At(0.0), &store);
+  };
+  EXPECT_NO_THROW(load("poseMug1", "Pose"));
+  EXPECT_NO_THROW(load("poseMug1", "SpatialEntity"));  // a wider word for it
+  EXPECT_NO_THROW(load("poseMug2", "Mug"));            // another file may say what that is
+  EXPECT_THROW(load("poseMug1", "Mug"), base::ConfigError);
+  EXPECT_THROW(load("mug1", "Pose"), base::ConfigError);
+}
+
+TEST_F(LoadingTest, AnglesOfMoreThanATurnAreRefusedAsDegrees) {
+  Store store(":memory:", test_support::RestaurantOntology());
+  const auto error = [&](const Filler& yaw) {
+    Fluent pose = PoseAt("p1", 1.0);
+    pose.properties.push_back({"hasYaw", "xsd:float", yaw});
+    try {
+      Load({{pose}, {}, {}}, base::Rng(1), At(0.0), &store);
+    } catch (const base::ConfigError& refused) {
+      return std::string(refused.what());
+    }
+    return std::string();
+  };
+  for (const double yaw : {0.0, 3.15, -6.28}) EXPECT_EQ(error(yaw), "") << yaw;
+  EXPECT_THAT(error(90.0), HasSubstr("is 90 rad, more than a turn; if these are degrees, write "
+                                     "1.5708"));
+  EXPECT_THAT(error(-180.0), HasSubstr("write -3.1416"));
+  EXPECT_THAT(error(std::int64_t{45}), HasSubstr("is 45 rad"));
 }
 
 TEST_F(LoadingTest, APoseNobodyKnowsIsNamedAndNothingGoesIn) {

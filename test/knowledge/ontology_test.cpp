@@ -12,6 +12,7 @@
 
 #include "hires/base/error.h"
 #include "hires/base/rng.h"
+#include "support/log_catcher.h"
 #include "support/temporary_folder.h"
 
 namespace hires::knowledge::ontology_test {
@@ -183,6 +184,43 @@ TEST(OntologyTest, HeadersAndRemarksArePassedOver) {
   EXPECT_THAT(ontology.ConceptNames(), ElementsAre("Mug", "Thing"));
 }
 
+struct BeyondTheSubset {
+  std::string body;  // behind the four lines of kPrefixes and the eight of kKitchen
+  std::string kind;
+  int line;
+};
+
+TEST(OntologyTest, WhatIsBeyondTheSubsetIsPassedOverWithOneWarning) {
+  const std::vector<BeyondTheSubset> cases{
+      {"race:Mug rdfs:subClassOf [ a owl:Restriction ; owl:onProperty race:hasPose ] .\n",
+       "owl:Restriction (1)", 13},
+      {"race:Cup a owl:Class ; owl:equivalentClass race:Mug .\n", "owl:equivalentClass (1)", 13},
+      {"race:Mug owl:disjointWith race:Pose .\nrace:Pose owl:disjointWith race:Mug .\n",
+       "owl:disjointWith (2)", 13},
+      {"[] a owl:AllDisjointClasses ; owl:members ( race:Mug race:Pose ) .\n",
+       "owl:AllDisjointClasses (1)", 13},
+      {"race:hasPose a owl:TransitiveProperty ; rdfs:subPropertyOf race:hasPose .\n",
+       "owl:TransitiveProperty (1), rdfs:subPropertyOf (1)", 13},
+      {"\nrace:mug1 a race:Mug , owl:NamedIndividual ; race:hasPose race:p1 .\n"
+       "race:p1 a race:Pose .\n",
+       "individuals (1), owl:NamedIndividual (1), statements about individuals (1)", 14}};
+  const std::vector<std::string> names = Read(kKitchen).ConceptNames();
+  for (const BeyondTheSubset& beyond : cases) {
+    SCOPED_TRACE(beyond.body);
+    const test_support::LogCatcher log;
+    EXPECT_THAT(Read(kKitchen + beyond.body).ConceptNames(), IsSupersetOf(names));
+    EXPECT_THAT(log.lines, ElementsAre(AllOf(HasSubstr("t.ttl"), HasSubstr(beyond.kind),
+                                             HasSubstr("line " + std::to_string(beyond.line)))));
+  }
+}
+
+TEST(OntologyTest, AnnotationsThatTheFileDeclaresArePassedOver) {
+  const test_support::LogCatcher log;
+  Read(kKitchen + "race:author a owl:AnnotationProperty ; rdfs:range xsd:string .\n" +
+       "race:Mug race:author \"me\" .\n");
+  EXPECT_THAT(log.lines, IsEmpty());
+}
+
 TEST(OntologyTest, NothingAtAllIsAnOntologyOfThings) {
   EXPECT_THAT(Ontology::FromTurtle("", "t.ttl").ConceptNames(), ElementsAre("Thing"));
   EXPECT_THAT([] { Ontology::FromFiles({}); },
@@ -266,19 +304,8 @@ const std::vector<Malformed> kMalformed{
     {"NoPrefix", "<urn:nowhere#A> a owl:Class .\n", {"<urn:nowhere#A> has no prefix", "line 5"}},
     {"NoName", "race: a owl:Class .\n", {"the last part of <urn:test:race#> is no name", "line 5"}},
     {"OddName", "<urn:test:race#a%20b> a owl:Class .\n", {"is no name", "line 5"}},
-    {"Restriction",
-     "race:A a owl:Class ; rdfs:subClassOf [ a owl:Restriction ; owl:onProperty race:r ] .\n",
-     {"beyond what is read of OWL", "rdfs:subClassOf", "line 5"}},
-    {"Equivalent",
-     "race:A a owl:Class .\nrace:B a owl:Class ; owl:equivalentClass race:A .\n",
-     {"owl:equivalentClass", "beyond what is read of OWL", "owl:DatatypeProperty", "line 6"}},
-    {"Transitive",
-     "race:r a owl:ObjectProperty , owl:TransitiveProperty ; rdfs:range owl:Thing .\n",
-     {"owl:TransitiveProperty", "beyond what is read of OWL", "line 5"}},
-    {"Individual", "race:A a owl:Class .\nrace:a1 a race:A .\n", {"race#a1", "line 6"}},
-    {"AxiomOnItsOwn",
-     "race:A a owl:Class .\n[] a owl:AllDisjointClasses ; owl:members ( race:A ) .\n",
-     {"beyond what is read of OWL", "line 6"}},
+    {"OfUnknownType", "race:A a owl:Class .\nrace:a1 a race:B .\n", {"race#a1", "line 6"}},
+    {"NodeOfNobody", "[] race:likes owl:Thing .\n", {"beyond what is read of OWL", "line 5"}},
     {"UnknownPredicate",
      "race:A a owl:Class ; race:likes race:A .\n",
      {"race#likes", "beyond what is read of OWL", "line 5"}},

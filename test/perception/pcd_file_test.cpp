@@ -7,6 +7,7 @@
 #include <fstream>
 
 #include "hires/base/error.h"
+#include "support/log_catcher.h"
 #include "support/temporary_folder.h"
 
 namespace hires::perception::pcd_file_test {
@@ -43,6 +44,39 @@ TEST_F(PcdFileTest, TextIsReadWithWhatWasNotMeasured) {
   EXPECT_EQ(cloud.height, 1);
   EXPECT_EQ(cloud.points[0], Eigen::Vector3f(1.0F, -2.5F, 0.3F));
   EXPECT_FALSE(IsMeasured(cloud.points[1]));
+}
+
+TEST_F(PcdFileTest, WhatWindowsWritesForNoNumberWasNotMeasured) {
+  for (const char* word : {"1.#QNAN", "-1.#IND", "1.#INF00", "-nan(ind)", "-nan"}) {
+    SCOPED_TRACE(word);
+    const PointCloud cloud =
+        ReadPcd(Write(std::string(kHeader) + "DATA ascii\n1 2 " + word + " 7\n1 2 3 0\n"));
+    EXPECT_FALSE(IsMeasured(cloud.points[0]));
+    EXPECT_TRUE(IsMeasured(cloud.points[1]));
+  }
+  EXPECT_NE(ErrorOf(std::string(kHeader) + "DATA ascii\n1 2 2.#QNAN 7\n1 2 3 0\n"), "");
+}
+
+TEST_F(PcdFileTest, OfFieldsOfOneNameTheFirstCounts) {
+  const std::string text =
+      "FIELDS x y z x z\nSIZE 4 4 4 4 4\nTYPE F F F F F\nCOUNT 1 1 1 1 1\nWIDTH 1\nHEIGHT 1\n"
+      "POINTS 1\nDATA ascii\n1 2 3 4 5\n";
+  EXPECT_EQ(ReadPcd(Write(text)).points.at(0), Eigen::Vector3f(1.0F, 2.0F, 3.0F));
+}
+
+TEST_F(PcdFileTest, PointsBehindTheLastOneAreWarnedOf) {
+  const auto warning = [&](const std::string& rest) {
+    const test_support::LogCatcher log;
+    EXPECT_EQ(ReadPcd(Write(std::string(kHeader) + rest)).points.size(), 2u);
+    return log.lines.empty() ? std::string() : log.lines.front();
+  };
+  const std::string two = "DATA ascii\n1 2 3 7\n4 5 6 0\n";
+  EXPECT_EQ(warning(two + " \r\n\n"), "");
+  EXPECT_NE(warning(two + "7 8 9 0\n\n7 8 9 0\n").find("2 more points follow the 2"),
+            std::string::npos);
+  const std::string points(2 * 16, 'a');
+  EXPECT_EQ(warning("DATA binary\n" + points + std::string(64, '\0')), "");  // padding
+  EXPECT_NE(warning("DATA binary\n" + points + points).find("2 more points"), std::string::npos);
 }
 
 TEST_F(PcdFileTest, WhatIsWrittenIsReadAgain) {

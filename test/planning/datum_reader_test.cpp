@@ -141,6 +141,24 @@ TEST(ReadDataTest, ByteOrderMarksAreSkipped) {
   EXPECT_EQ(ReadSingle(ToString(marked)), marked);
 }
 
+TEST(ReadDataTest, BlanksOfWebPagesAndWordProcessorsAreBlanks) {
+  for (const std::string blank :
+       {"\xC2\xA0", "\xE2\x80\x83", "\xE2\x80\x8B", "\xE2\x80\xAF", "\xE3\x80\x80"}) {
+    SCOPED_TRACE(blank);
+    EXPECT_EQ(Again(blank + "(a" + blank + "(b)" + blank + blank + "3" + blank + ")" + blank),
+              "(a (b) 3)");
+    const Datum kept = MakeSymbol("a" + blank + "b");
+    EXPECT_EQ(ReadSingle(ToString(kept)), kept);
+  }
+  // Its neighbours are letters: a dash, and the e with an accent.
+  EXPECT_EQ(ReadData("(a\xE2\x80\x93"
+                     "b \xC3\xA0)",
+                     "f")
+                .at(0)
+                .items.size(),
+            2u);
+}
+
 TEST(ReadDataTest, NilAndTheEmptyListAreEqual) {
   EXPECT_EQ(ReadSingle("nil"), ReadSingle("()"));
   EXPECT_EQ(ReadSingle("(a nil)"), ReadSingle("(a ())"));

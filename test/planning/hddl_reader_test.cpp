@@ -7,6 +7,7 @@
 
 #include "hires/base/error.h"
 #include "hires/base/text.h"
+#include "planning/language/hddl_vocabulary.h"
 
 namespace hires::planning::hddl_reader_test {
 namespace {
@@ -206,6 +207,25 @@ TEST(HddlMethodTest, SubtasksMayBePartlyOrdered) {
   EXPECT_THAT(network.order, ElementsAre(Pair(0, 3), Pair(1, 3)));
 }
 
+TEST(HddlMethodTest, AListOfListsIsAConjunction) {
+  const std::string with = R"((:action a :parameters (?p - place)
+      :precondition (and (at ?p) (not (full))) :effect (and (not (at ?p)) (full)))
+    (:method m :parameters (?p - place) :task (go ?p) :precondition (and (at ?p) (full))
+      :subtasks (and (t1 (a ?p)) (t2 (go ?p))) :ordering (and (< t1 t2))
+      :constraints (and (not (= ?p dock)))))";
+  std::string without = with;
+  for (std::size_t at; (at = without.find("(and ")) != std::string::npos;) without.erase(at + 1, 4);
+  const Domain meant = World(with), read = World(without);
+  EXPECT_EQ(Text(read.operators.at(0).precondition.condition),
+            Text(meant.operators.at(0).precondition.condition));
+  EXPECT_EQ(Texts(read.operators.at(0).adds), Texts(meant.operators.at(0).adds));
+  EXPECT_EQ(Texts(read.operators.at(0).deletes), Texts(meant.operators.at(0).deletes));
+  EXPECT_EQ(MethodCondition(read), MethodCondition(meant));
+  const TaskNetwork& network = read.methods.at(0).branches.at(0).subtasks;
+  EXPECT_THAT(Tasks(network), ElementsAre("(!a ?p)", "(go ?p)"));
+  EXPECT_THAT(network.order, ElementsAre(Pair(0, 1)));
+}
+
 TEST(HddlMethodTest, OrderedSubtasksFollowOneAnother) {
   const Domain domain = World(R"(
     (:method a :parameters () :task (go dock)
@@ -325,6 +345,25 @@ std::string GoalAloneError(const std::string& methods) {
   return "no error";
 }
 
+TEST(HddlProblemTest, TheFaultOfEachSectionAndFactIsToldAtOnce) {
+  try {
+    Task(World(kDrive), R"(
+(:htn :subtasks (go mars))
+(:goal (att dock))
+(:metric maximize (total-cost))
+(:init (at dock)
+       (at)
+       (full dock)
+       (at dock) (not (at dock)) ))");
+    FAIL() << "nothing was wrong";
+  } catch (const base::ConfigError& error) {
+    for (const int line : {2, 3, 4, 6, 7, 8}) {
+      EXPECT_THAT(error.what(), HasSubstr("p.hddl:" + std::to_string(line) + ":"));
+    }
+    EXPECT_THAT(error.what(), ::testing::Not(HasSubstr("p.hddl:5:")));
+  }
+}
+
 TEST(HddlProblemTest, WithoutTasksWhereNothingIsDecomposedItIsCalledPddl) {
   EXPECT_THAT(GoalAloneError("(:method m :task (t) :subtasks (a))"),
               AllOf(HasSubstr("(:htn ...) is missing"), ::testing::Not(HasSubstr("PDDL"))));
@@ -402,6 +441,19 @@ TEST(HddlProblemTest, ValuesOfFunctionsAreFacts) {
 }
 
 // Several domains of the competition name directions that only their problems declare.
+TEST(HddlTypesTest, WhatTheReaderMadeIsShownAsHddlHasIt) {
+  const auto as_written = [](const std::string& predicate, const std::vector<Datum>& arguments) {
+    std::vector<Datum> items{MakeSymbol(predicate)};
+    items.insert(items.end(), arguments.begin(), arguments.end());
+    return hddl::AsWritten(MakeList(items));
+  };
+  const Datum dock = MakeSymbol("dock"), x = MakeVariable("?x");
+  EXPECT_EQ(as_written("%type-place", {x}), "(?x - place)");
+  EXPECT_EQ(as_written(hddl::ValuePredicate("far"), {dock, x}), "(= (far dock) number)");
+  EXPECT_EQ(as_written(hddl::ValuePredicate("fuel"), {x}), "(= (fuel) number)");
+  EXPECT_EQ(as_written("at", {dock}), "(at dock)");
+}
+
 TEST(HddlProblemTest, ObjectsOfTheDomainMayBeLeftToTheProblem) {
   const Domain domain = World("(:method m :task (go mars) :precondition (at moon))");
   const auto read = [&domain](const std::string& objects) -> std::string {
@@ -516,6 +568,13 @@ INSTANTIATE_TEST_SUITE_P(
         After("(:action a :precondition (forall ?x (full)))", {"wanted variables such as"}),
         After("(:action a :precondition (exists (?x - cup)))", {"wanted (exists (?x - type)"}),
         After("(:action a :precondition (= mug))", {"wanted (= a b)"}),
+        After("(:action a :parameters (?x ?y) :precondition (< (size ?x) 5))",
+              {"bad.hddl:3:46: action 'a': (< (size ?x) 5) compares numbers"}),
+        After("(:action a :parameters (?x) :precondition (not (>= (size ?x) (size ?x))))",
+              {"compares numbers"}),
+        After("(:action a :parameters (?x) :precondition (= (size ?x) 0))", {"compares numbers"}),
+        After("(:durative-action a :parameters ())", {"(:durative-action ...) of PDDL is not"}),
+        After("(:derived (at ?p) (full))", {"(:derived ...) of PDDL is not supported"}),
         After("(:action a :precondition full)", {"full came, wanted a condition"}),
         After("(:action a :effect (when (full)))", {"wanted (when condition effect)"}),
         After("(:action a :effect (not (full) (full)))", {"wanted (not (predicate ...))"}),
@@ -540,8 +599,9 @@ INSTANTIATE_TEST_SUITE_P(
         After("(:method m)", {"bad.hddl:3:1: method 'm': :task is missing; add it"}),
         After("(:method m :task (goo dock))", {"task 'goo' is unknown", "'go'"}),
         After("(:method m :task (go))", {"task 'go' has 0 arguments", "declaration has 1"}),
+        After("(:method m :task (go ?p - place))", {"(go ?p - place) has types; write them in"}),
         After("(:method m :task (drive dock))", {"'drive' is an action"}),
-        After("(:method m :task (go ?p))", {"variable '?p' is unknown", "Declare it"}),
+        After("(:method m :task (go ?p))", {"is unknown; none is defined; declare it"}),
         After("(:method m :task (go dock)) (:method m :task (go dock))",
               {"there is a method of that name already"}),
         After("(:method m :task (go dock) :subtasks (fly dock))", {"task 'fly' is unknown"}),

@@ -67,6 +67,20 @@ TEST(HddlObjectTest, OneListedWithSeveralTypesIsOfAllOfThem) {
   EXPECT_EQ(NumSteps(domain, problem), 2);
 }
 
+TEST(HddlObjectTest, CommasBetweenEntriesArePassedOver) {
+  const Domain domain = DomainOf(kGifts);
+  const auto facts = [&](const std::string& objects) {
+    return Facts(domain, ProblemOf(domain, "(:objects " + objects + ") (:htn)"));
+  };
+  const std::vector<std::string> wanted = facts("a b c - cup d - gift");
+  EXPECT_EQ(facts("a, b ,c - cup, d - gift"), wanted);
+  EXPECT_EQ(facts("a,b,c, - cup d -, gift"), wanted);
+  EXPECT_EQ(DomainOf("(:predicates (p ?a, ?b)) (:action x :parameters (?a, ?b - object))")
+                .operators.at(0)
+                .head.items.size(),
+            3u);
+}
+
 TEST(HddlObjectTest, AProblemAddsTypesToAConstant) {
   const Domain domain = DomainOf("(:constants mug - gift)" + kGifts);
   const Problem problem =

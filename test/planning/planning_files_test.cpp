@@ -131,6 +131,21 @@ TEST(CheckSidecarTest, ASidecarThatCannotBeExecutedIsRefusedWithFileAndKey) {
   EXPECT_THAT(error(), AllOf(HasSubstr("d.yaml"), HasSubstr("line 2")));
 }
 
+TEST(LoadTest, AYamlFileBesideADomainThatIsNoSidecarIsPassedOverWithAWarning) {
+  const hires::test_support::TemporaryFolder folder;
+  const std::string path = folder.Write("d.lisp", kShop2Domain);
+  for (const char* foreign : {"version: 3\nservices: {planner: {}}\n", "# nothing\n", "{}\n"}) {
+    SCOPED_TRACE(foreign);
+    folder.Write("d.yaml", foreign);
+    const Domain domain = LoadDomain(path);
+    EXPECT_EQ(domain.subtask_order, SubtaskOrder::kKept);
+    EXPECT_THAT(domain.warnings, ElementsAre(HasSubstr("d.yaml: stands beside the domain")));
+    EXPECT_NO_THROW(CheckSidecar(path, domain));
+  }
+  folder.Write("d.yaml", "legs: []\n");
+  EXPECT_THAT(LoadDomain(path).warnings, IsEmpty());
+}
+
 TEST(LoadTest, TheOrderOfHddlIsAlwaysKept) {
   const hires::test_support::TemporaryFolder folder;
   const std::string hddl = folder.Write("d.hddl", kHddlDomain);

@@ -1,9 +1,11 @@
 #include "planning/proof/prover.h"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <string>
 
+#include "hires/base/error.h"
 #include "planning/support/proof_bench.h"
 
 // The order of solutions was asked of SHOP3 4.3; engine_test.cpp holds it in whole plans.
@@ -45,6 +47,15 @@ TEST(ProverTest, ProvesAGroundGoalOnce) {
 
 TEST(ProverTest, ImplyHoldsWhereItsConditionDoesNot) {
   EXPECT_EQ(All("((q ?x) (imply (p ?x) (none)))", false), "c");
+}
+
+TEST(ProverTest, AnImplyThatNothingBindsIsRefusedInASentence) {
+  try {
+    All("((imply (p ?x) (none)))", false);
+    FAIL() << "no error";
+  } catch (const base::ConfigError& error) {
+    EXPECT_THAT(error.what(), ::testing::HasSubstr(": the first part of an imply must have"));
+  }
 }
 
 TEST(ProverTest, SetofGathersEachSolutionOnce) {

@@ -85,6 +85,16 @@ TEST(TaskTextTest, AProblemIsFoundByItsNameInAnyCase) {
   EXPECT_EQ(ConfigErrorOf([] { FindProblem({}, "x"); }), "problem 'x' is unknown; none is defined");
 }
 
+TEST(TaskTextTest, OfTwoProblemsOfOneNameNeitherIsTaken) {
+  std::vector<Problem> problems(3);
+  for (Problem& problem : problems) problem.source = "p.lisp";
+  problems[0].name = problems[2].name = "serve";
+  problems[1].name = "clear";
+  EXPECT_EQ(ConfigErrorOf([&] { FindProblem(problems, "Serve"); }),
+            "p.lisp: two problems are called 'serve'; rename one");
+  EXPECT_EQ(&FindProblem(problems, "clear"), &problems[1]);
+}
+
 // ------------------------------------------------------------------------------ networks as text
 
 /// The order between all tasks of a network, nested ones included, by their texts.

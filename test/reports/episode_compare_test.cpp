@@ -10,6 +10,7 @@ namespace {
 using testing::AllOf;
 using testing::HasSubstr;
 using testing::IsEmpty;
+using testing::Not;
 
 constexpr double kSurprise = 0.05;
 
@@ -93,6 +94,56 @@ TEST(CompareStepTest, WhatCannotBeImaginedIsNotCompared) {
   EpisodeStep cut = Step(ActionFate::kUnknown, 3.0);
   cut.why_not = "its result was not recorded";
   EXPECT_EQ(CompareStep(cut, {}, kSurprise).why, cut.why_not);
+}
+
+/// Rollouts that ended by a failure each, beside successes.
+ImaginedAction FailedBy(int num_success, const base::Failure& failure, int num_failed) {
+  std::vector<imagination::RolloutResult> results;
+  for (int i = 1; i <= num_success; ++i) results.push_back(Result(true, i));
+  for (int i = 0; i < num_failed; ++i) {
+    results.push_back(Result(false, 0.0));
+    results.back().failure = failure;
+  }
+  return {imagination::SumUp(results), {}};
+}
+
+const base::Failure kVoid{base::FailureCode::kPhysicsBroke, {"mug"}, "mug gained energy"};
+
+TEST(CompareStepTest, VoidRolloutsSayNothing) {
+  const EpisodeStep done = Step(ActionFate::kSucceeded, 20.0);
+  const auto all = CompareStep(done, FailedBy(0, kVoid, 40), kSurprise);
+  EXPECT_EQ(all.verdict, StepVerdict::kNotCompared);
+  EXPECT_EQ(all.why, "every rollout is void");
+  const auto most = CompareStep(done, FailedBy(40, kVoid, 60), kSurprise);
+  EXPECT_EQ(most.verdict, StepVerdict::kAsImagined);
+  EXPECT_EQ(most.imagined.evidence.num_rollouts, 40);
+  EXPECT_DOUBLE_EQ(most.imagined.evidence.success.share, 1.0);
+  EXPECT_DOUBLE_EQ(most.imagined.evidence.action_failed_share, 0.0);
+  const auto none = CompareStep(done, FailedBy(0, base::FailureCode::kTimedOut, 40), kSurprise);
+  EXPECT_EQ(none.verdict, StepVerdict::kSucceededAgainst);
+}
+
+TEST(EpisodeReportTest, TheTableTellsOfWhatMostRolloutsFailedOrAreVoid) {
+  const EpisodeStep done = Step(ActionFate::kSucceeded, 20.0);
+  const base::Failure blocked{base::FailureCode::kStartBlocked, {}, "the start is off the map"};
+  const std::string text = EpisodeTable({CompareStep(done, FailedBy(0, blocked, 8), kSurprise),
+                                         CompareStep(done, FailedBy(60, blocked, 4), kSurprise),
+                                         CompareStep(done, FailedBy(60, kVoid, 4), kSurprise)});
+  EXPECT_THAT(text,
+              HasSubstr("step 1: of its rollouts 8 failed by start_blocked: the start is off"));
+  EXPECT_THAT(text, Not(HasSubstr("step 2")));
+  EXPECT_THAT(text,
+              HasSubstr("step 3: of its rollouts 4 void by physics_broke: mug gained energy"));
+}
+
+TEST(EpisodeReportTest, WhatSeveralStepsHaveInCommonIsToldOnce) {
+  EpisodeStep cut = Step(ActionFate::kUnknown, 3.0);
+  cut.why_not = "its result was not recorded";
+  const ComparedStep same = CompareStep(cut, {}, kSurprise);
+  const ComparedStep other = CompareStep(Step(ActionFate::kSucceeded, 3.0), {}, kSurprise);
+  const std::string text = EpisodeTable({same, other, same});
+  EXPECT_THAT(text, HasSubstr("steps 1, 3: its result was not recorded\n"));
+  EXPECT_THAT(text, HasSubstr("step 2: no rollout was played\n"));
 }
 
 TEST(EpisodeReportTest, TableSummaryAndJsonSayWhatWasImaginedAndWhatHappened) {

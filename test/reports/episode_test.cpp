@@ -14,9 +14,12 @@ namespace {
 using geometry::Pose2;
 using geometry::Twist2;
 using robot::JointPositions;
+using testing::Contains;
 using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
+using testing::IsSupersetOf;
+using testing::Not;
 using testing::SizeIs;
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
@@ -168,6 +171,40 @@ TEST(EpisodeTest, AnActionThatNobodyKnowsIsNamed) {
   robot.Rest(1.0);
   robot.builder.OnResult("a", robot.time, 1.0, ActionFate::kSucceeded, {});
   EXPECT_THAT(robot.Steps().at(0).why_not, HasSubstr("make_tea"));
+}
+
+TEST(EpisodeTest, AGoalOrResultThatWasRecordedTwiceCountsOnce) {
+  Recording robot;
+  robot.Rest(1.0);
+  const double begin = robot.time;
+  for (int i = 0; i < 2; ++i) robot.builder.OnGoal("a", DriveTo(kTable), begin);
+  robot.Rest(1.0);
+  for (int i = 0; i < 2; ++i) {
+    robot.builder.OnResult("a", robot.time, 1.0, ActionFate::kSucceeded, {});
+  }
+  robot.builder.OnResult("b", robot.time, 1.0, ActionFate::kSucceeded, {});
+  robot.builder.OnGoal("a", DriveTo(kTable), robot.time);  // the same id, later: another one
+  const auto& dropped = robot.builder.dropped();
+  EXPECT_EQ(dropped.at("goals: recorded before"), 1);
+  EXPECT_EQ(dropped.at("results: recorded before"), 1);
+  EXPECT_EQ(dropped.at("results: their goal was not recorded"), 1);
+  EXPECT_THAT(robot.Steps(), SizeIs(2));
+}
+
+TEST(EpisodeTest, JointsOfArmsAndTorsoOfWhichNothingIsToldAreNamed) {
+  Recording whole, partial, foreign;
+  whole.Rest(1.0);
+  EXPECT_THAT(whole.builder.UntoldJoints(), IsEmpty());
+  partial.joints = PostureOf("rightarm1", "armtosideposture");
+  partial.joints["fl_caster_rotation_joint"] = 0.0;
+  partial.Rest(1.0);
+  EXPECT_TRUE(partial.builder.knows_joints());
+  EXPECT_THAT(partial.builder.UntoldJoints(), Contains("torso_lift_joint"));
+  EXPECT_THAT(partial.builder.UntoldJoints(), IsSupersetOf(Arm("leftarm1").joints));
+  EXPECT_THAT(partial.builder.UntoldJoints(), Not(Contains(Arm("rightarm1").joints.front())));
+  foreign.joints = {{"shoulder_pan", 0.0}, {"fl_caster_rotation_joint", 0.0}};
+  foreign.Rest(1.0);
+  EXPECT_FALSE(foreign.builder.knows_joints());
 }
 
 // ---- Motions that are found.

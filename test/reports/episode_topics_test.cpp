@@ -63,6 +63,22 @@ TEST(EpisodeTopicsTest, WhatIsNeededAndHasNoMessageIsNamedWithWhatToRecord) {
   EXPECT_THAT(check.Advice(), HasSubstr(" /base_odometry/odom"));
 }
 
+TEST(EpisodeTopicsTest, WhatCameUnderAnotherNameIsSaidWithHowToNameIt) {
+  const auto advice_for = [](const std::string& name, const std::string& other) {
+    auto bag = WholeBag();
+    Find(name, &bag)->name = other;
+    return CheckTopics(OfPr2(), bag).Advice();
+  };
+  EXPECT_THAT(advice_for("/base_odometry/odom", "/odom"),
+              HasSubstr("there are\n  /odom (nav_msgs/Odometry)\nif they are what is missing"));
+  EXPECT_THAT(advice_for("/joint_states", "/robot1/joint_states"),
+              HasSubstr("\n  /robot1/joint_states (sensor_msgs/JointState)"));
+  EXPECT_THAT(advice_for("/execute_action/goal", "/a/execute_action/goal"), HasSubstr("--episode"));
+  // Of the same type, but known as what it is; and what nobody misses.
+  EXPECT_THAT(advice_for("/tf", "/else"), Not(HasSubstr("/tf_static")));
+  EXPECT_THAT(advice_for("/base_scan", "/scan"), IsEmpty());
+}
+
 TEST(EpisodeTopicsTest, AWrongTypeUnderAKnownNameCountsAsMissing) {
   auto bag = WholeBag();
   Find("/joint_states", &bag)->type = "std_msgs/String";

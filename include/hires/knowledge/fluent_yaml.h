@@ -52,7 +52,8 @@ struct KnowledgeFile {
   std::vector<DemandTopic> topics;
   std::string source{};  ///< the file, for messages; empty: none
   std::vector<ScenarioSetting>
-      scenarios{};  ///< for a runner of scenarios; who loads passes them over
+      scenarios{};                    ///< for a runner of scenarios; who loads passes them over
+  std::vector<std::string> places{};  ///< "document 3, line 12": of each fluent; empty: not known
 };
 
 /// Times are finite seconds, or .inf and -.inf; [0, 0] is -infinity in StartTime, infinity in

@@ -24,7 +24,8 @@ struct LoadSummary {
 /// opened.
 /// @param changes  may be null: what it changed.
 /// @throws base::ConfigError naming the file: what Store::Add refuses, or ApplyModifications; a
-/// pose that is in neither is named.
+/// pose that is in neither is named. All fluents that the ontology does not allow, or whose angles
+/// are more than a turn, are told at once, with their places.
 LoadSummary Load(const KnowledgeFile& file, base::Rng rng, const Assertion& by, Store* store,
                  std::vector<Change>* changes = nullptr);
 

@@ -22,8 +22,8 @@ class Ontology {
   /// read, and nothing fetched.
   /// @throws ConfigError naming file, line and what is wrong: unreadable Turtle, a cycle of
   ///   subclasses, a relation without range, an undeclared superclass (with the nearest names),
-  ///   OWL beyond the subset, more than 16 MB, 5000 concepts or relations each, 100 nested
-  ///   brackets.
+  ///   names and types that nothing declares, more than 16 MB, 5000 concepts or relations each, 100
+  ///   nested brackets.
   static Ontology FromFiles(const std::vector<std::string>& paths);
   /// @param source  Stands for the file name in messages.
   static Ontology FromTurtle(std::string_view text, const std::string& source);

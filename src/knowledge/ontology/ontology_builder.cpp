@@ -11,6 +11,7 @@
 #include "hires/base/error.h"
 #include "hires/base/hash.h"
 #include "hires/base/keys.h"
+#include "hires/base/log.h"
 #include "hires/base/text.h"
 
 namespace hires::knowledge {
@@ -33,6 +34,10 @@ constexpr std::array kDeclaredTypes{"float", "double", "int", "integer", "boolea
 
 bool Starts(const std::string& text, const std::string& with) {
   return text.compare(0, with.size(), with) == 0;
+}
+
+bool IsOfOwl(const std::string& iri) {
+  return Starts(iri, kOwl) || Starts(iri, kRdfs) || Starts(iri, kRdf);
 }
 
 /// "rdf:type" of an IRI that everybody knows, else the IRI itself, for messages.
@@ -91,6 +96,7 @@ Ontology OntologyBuilder::Build() {
   names_[kThing] = "Thing";
   for (const TurtleDocument& document : documents_) AddPrefixes(document);
   for (const TurtleDocument& document : documents_) Declare(document);
+  DeclareIndividuals();
   for (const TurtleDocument& document : documents_) Describe(document);
   CheckBlanks();
   CheckRelations();
@@ -100,6 +106,7 @@ Ontology OntologyBuilder::Build() {
   FillClosures(&ontology);
   FillRelations(&ontology);
   FillHash(&ontology);
+  WarnOfPassedOver();
   return ontology;
 }
 
@@ -130,13 +137,47 @@ void OntologyBuilder::DeclareOne(const TurtleStatement& statement, Place place) 
   const std::string type = statement.object.value;
   if (type == kOwl + "Ontology") {
     headers_.insert(statement.subject.value);
-  } else if (type == kOwl + "Class") {
+  } else if (type == kOwl + "Class" || type == kRdfs + "Class") {
     DeclareConcept(statement.subject.value, place);
   } else if (type == kOwl + "ObjectProperty" || type == kOwl + "DatatypeProperty" ||
              type == kOwl + "FunctionalProperty") {
     DeclareRelation(statement.subject.value, type, place);
+  } else if (type == kOwl + "AnnotationProperty") {
+    annotations_.insert(statement.subject.value);
+  } else if (IsOfOwl(type)) {
+    if (type == kOwl + "NamedIndividual") individuals_.insert(statement.subject.value);
+    PassOver(Readable(type), place);
   } else {
-    FailOnSubset(statement, place);
+    typed_.emplace_back(&statement, place);
+  }
+}
+
+/// Only now all classes are known: what is of another type is a slip.
+void OntologyBuilder::DeclareIndividuals() {
+  for (const auto& [statement, place] : typed_) {
+    const auto name = names_.find(statement->object.value);
+    if (name == names_.end() || concepts_.count(name->second) == 0) FailOnSubset(*statement, place);
+    if (individuals_.insert(statement->subject.value).second) PassOver("individuals", place);
+  }
+}
+
+void OntologyBuilder::PassOver(const std::string& kind, Place place) {
+  PassedOver& passed = passed_over_[place.document];
+  if (passed.kinds.empty()) passed.first_line = place.line;
+  passed.first_line = std::min(passed.first_line, place.line);
+  ++passed.kinds[kind];
+}
+
+void OntologyBuilder::WarnOfPassedOver() const {
+  for (const auto& [document, passed] : passed_over_) {
+    std::vector<std::string> kinds;
+    for (const auto& [kind, count] : passed.kinds) {
+      kinds.push_back(fmt::format("{} ({})", kind, count));
+    }
+    base::Log(base::LogLevel::kWarn,
+              fmt::format("{}: passed over, as it is beyond what is read of OWL: {}; the first in "
+                          "line {}. Individuals belong into files of fluents",
+                          document->source, base::Join(kinds, ", "), passed.first_line));
   }
 }
 
@@ -213,25 +254,33 @@ bool OntologyBuilder::IsPassedOver(const TurtleStatement& statement) const {
                                               kRdfs + "isDefinedBy", kOwl + "versionInfo"};
   // Nodes without a name count where a statement refers to them.
   return statement.subject.kind == NodeKind::kBlank || statement.predicate == kRdf + "type" ||
-         kRemarks.count(statement.predicate) > 0 || headers_.count(statement.subject.value) > 0;
+         kRemarks.count(statement.predicate) > 0 || annotations_.count(statement.predicate) > 0 ||
+         annotations_.count(statement.subject.value) > 0 ||
+         headers_.count(statement.subject.value) > 0;
 }
 
 void OntologyBuilder::DescribeOne(const TurtleStatement& statement, Place place) {
-  if (statement.predicate == kRdfs + "subClassOf") {
+  const std::string& subject = statement.subject.value;
+  if (individuals_.count(subject) > 0 && names_.count(subject) == 0) {
+    PassOver("statements about individuals", place);
+  } else if (statement.predicate == kRdfs + "subClassOf") {
     AddSuperclass(statement, place);
   } else if (statement.predicate == kRdfs + "domain") {
     SetDomain(statement, place);
   } else if (statement.predicate == kRdfs + "range") {
     SetRange(statement, place);
+  } else if (IsOfOwl(statement.predicate)) {
+    PassOver(Readable(statement.predicate), place);
   } else {
     FailOnSubset(statement, place);
   }
 }
 
 void OntologyBuilder::AddSuperclass(const TurtleStatement& statement, Place place) {
-  if (statement.object.kind != NodeKind::kIri) FailOnSubset(statement, place);
+  if (statement.object.kind == NodeKind::kLiteral) FailOnSubset(statement, place);
   const std::string below = RequireConcept(statement.subject, place);
   if (below == "Thing") Fail(place, "owl:Thing stands above every concept, and below none");
+  if (statement.object.kind == NodeKind::kBlank) return;  // a restriction; CheckBlanks tells
   const std::string above = RequireConcept(statement.object, place);
   concepts_.at(below).above.push_back({above, place});
 }
@@ -325,11 +374,18 @@ const TurtleNode* OntologyBuilder::ObjectOf(Place place, const std::string& blan
   return nullptr;
 }
 
-/// Restrictions and axioms that stand for themselves hang on nodes that nothing refers to.
-void OntologyBuilder::CheckBlanks() const {
+/// Restrictions, and axioms that stand for themselves, hang on nodes without a name.
+void OntologyBuilder::CheckBlanks() {
   for (const auto& [id, statements] : blanks_) {
     if (used_blanks_.count(id) > 0) continue;
-    FailOnSubset(*statements.front(), {id.first, statements.front()->line});
+    const Place place{id.first, statements.front()->line};
+    const TurtleNode* type = ObjectOf(place, id.second, kRdf + "type");
+    const bool is_list = ObjectOf(place, id.second, kRdf + "first") != nullptr;
+    if (type != nullptr && IsOfOwl(type->value)) {
+      PassOver(Readable(type->value), place);
+    } else if (!is_list) {
+      FailOnSubset(*statements.front(), place);
+    }
   }
 }
 

@@ -44,11 +44,19 @@ class OntologyBuilder {
     std::optional<std::vector<std::string>> domain;
     std::optional<std::string> range;
   };
+  /// What of a document is beyond what is read of OWL, and says nothing of how names are used.
+  struct PassedOver {
+    int first_line{0};
+    std::map<std::string, int> kinds;  // "owl:disjointWith" -> how often
+  };
   using BlankId = std::pair<const TurtleDocument*, std::string>;
 
   void Declare(const TurtleDocument& document);
   void AddPrefixes(const TurtleDocument& document);
   void DeclareOne(const TurtleStatement& statement, Place place);
+  void DeclareIndividuals();
+  void PassOver(const std::string& kind, Place place);
+  void WarnOfPassedOver() const;
   void DeclareConcept(const std::string& iri, Place place);
   void DeclareRelation(const std::string& iri, const std::string& type, Place place);
   static void SetIsLink(RelationTerm* relation, bool is_link, Place place);
@@ -68,7 +76,7 @@ class OntologyBuilder {
   const TurtleNode* ObjectOf(Place place, const std::string& blank,
                              const std::string& predicate) const;
   void CheckRelations() const;
-  void CheckBlanks() const;
+  void CheckBlanks();
 
   void NumberConcepts(Ontology* ontology) const;
   void FillIsA(Ontology* ontology) const;
@@ -88,8 +96,12 @@ class OntologyBuilder {
   std::map<std::string, std::string> prefixes_;  // of all documents
   std::map<std::string, ConceptTerm> concepts_;  // by name
   std::map<std::string, RelationTerm> relations_;
-  std::map<std::string, std::string> names_;  // IRI of what is declared -> name
-  std::set<std::string> headers_;             // IRIs of owl:Ontology
+  std::map<std::string, std::string> names_;                     // IRI of what is declared -> name
+  std::set<std::string> headers_;                                // IRIs of owl:Ontology
+  std::set<std::string> annotations_;                            // IRIs of owl:AnnotationProperty
+  std::set<std::string> individuals_;                            // their IRIs
+  std::vector<std::pair<const TurtleStatement*, Place>> typed_;  // by a class that is not OWL's
+  std::map<const TurtleDocument*, PassedOver> passed_over_;
   std::map<BlankId, std::vector<const TurtleStatement*>> blanks_;  // what is said about them
   std::set<BlankId> used_blanks_;                                  // that somebody referred to
 };

@@ -1,10 +1,17 @@
 #include "hires/knowledge/loading.h"
 
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
 #include <set>
 #include <utility>
+#include <variant>
 
 #include "hires/base/error.h"
 #include "hires/base/text.h"
+#include "knowledge/fluents/store_check.h"
 
 namespace hires::knowledge {
 namespace {
@@ -29,6 +36,79 @@ std::vector<Fluent> FluentsToLoad(const KnowledgeFile& file, base::Rng rng, cons
   return fluents;
 }
 
+/// Roles of angles, which people who think in degrees give as such.
+bool IsAngle(const std::string& role) {
+  return role == "hasYaw" || role == "hasPitch" || role == "hasRoll";
+}
+
+void CheckAngles(const Fluent& fluent) {
+  constexpr double kTurn = 2.0 * M_PI + 0.01;  // [rad]
+  for (const Property& property : fluent.properties) {
+    if (!IsAngle(property.role)) continue;
+    const auto* real = std::get_if<double>(&property.filler);
+    const auto* whole = std::get_if<std::int64_t>(&property.filler);
+    const double angle = real ? *real : whole ? static_cast<double>(*whole) : 0.0;
+    if (std::abs(angle) <= kTurn) continue;
+    throw base::ConfigError(fmt::format(
+        "fluent '{}' of {}, property '{}': is {} rad, more than a turn; if these are "
+        "degrees, write {:.5g}",
+        fluent.instance, fluent.concept_name, property.role, angle, angle * M_PI / 180.0));
+  }
+}
+
+/// The concepts that the file gives an instance, by its name in lower case.
+using ConceptsOf = std::multimap<std::string, std::string>;
+
+ConceptsOf ConceptsIn(const KnowledgeFile& file) {
+  ConceptsOf concepts;
+  for (const Fluent& fluent : file.fluents) {
+    concepts.emplace(base::ToLower(fluent.instance), fluent.concept_name);
+  }
+  return concepts;
+}
+
+/// What is linked to as a Pose and is a Mug a few lines further on was mistaken for its pose.
+void CheckLinks(const Fluent& fluent, const ConceptsOf& concepts, const Ontology& ontology) {
+  for (const Property& property : fluent.properties) {
+    const auto* target = std::get_if<std::string>(&property.filler);
+    if (target == nullptr || !property.IsLink()) continue;
+    const auto [first, last] = concepts.equal_range(base::ToLower(*target));
+    const Ontology::ConceptId type = ontology.Find(property.type);
+    const bool is_other = std::none_of(first, last, [&](const auto& entry) {
+      const Ontology::ConceptId own = ontology.Find(entry.second);
+      return own == Ontology::kUnknown || ontology.IsA(own, type) || ontology.IsA(type, own);
+    });
+    if (first == last || !is_other) continue;
+    throw base::ConfigError(fmt::format(
+        "fluent '{}' of {}, property '{}': links to '{}' as a {}, and this file says that it is "
+        "a {}; correct one of them",
+        fluent.instance, fluent.concept_name, property.role, *target, property.type,
+        first->second));
+  }
+}
+
+/// Tells of all fluents that cannot be, each with its place in the file.
+void CheckFluents(const KnowledgeFile& file, const Ontology& ontology) {
+  constexpr std::size_t kMostTold = 10;
+  const ConceptsOf concepts = ConceptsIn(file);
+  std::vector<std::string> faults;
+  std::size_t num_faults = 0;
+  for (std::size_t i = 0; i < file.fluents.size(); ++i) {
+    try {
+      CheckFluent(file.fluents[i], ontology);
+      CheckAngles(file.fluents[i]);
+      CheckLinks(file.fluents[i], concepts, ontology);
+    } catch (const base::ConfigError& error) {
+      if (++num_faults > kMostTold) continue;
+      const std::string place = i < file.places.size() ? file.places[i] + ": " : "";
+      faults.push_back((file.source.empty() ? "" : file.source + ": ") + place + error.what());
+    }
+  }
+  if (faults.empty()) return;
+  if (num_faults > kMostTold) faults.push_back(fmt::format("and {} more", num_faults - kMostTold));
+  throw base::ConfigError(base::Join(faults, "\n"));
+}
+
 LoadSummary Summarize(const KnowledgeFile& file, std::size_t num_fluents,
                       const std::vector<Change>& changes) {
   LoadSummary summary;
@@ -44,6 +124,7 @@ LoadSummary Summarize(const KnowledgeFile& file, std::size_t num_fluents,
 LoadSummary Load(const KnowledgeFile& file, base::Rng rng, const Assertion& by, Store* store,
                  std::vector<Change>* changes) {
   try {
+    CheckFluents(file, store->ontology());
     const std::vector<Fluent> fluents = FluentsToLoad(file, rng, *store);
     std::vector<Change> made = store->Add(fluents, by);
     const LoadSummary summary = Summarize(file, fluents.size(), made);

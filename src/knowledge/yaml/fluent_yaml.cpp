@@ -27,6 +27,7 @@ class FileReader {
     const std::string where = fmt::format("{}: document {}", source_, document);
     if (root.tag == kTags[0]) {
       file_.fluents.push_back(ReadFluent(Fields(root, where, kFluentKeys)));
+      file_.places.push_back(fmt::format("document {}, line {}", document, root.line));
     } else if (root.tag == kTags[1]) {
       file_.modifications.push_back(ReadModification(Fields(root, where, kModificationKeys)));
     } else if (root.tag == kTags[2]) {

@@ -11,6 +11,7 @@
 #include "hires/base/error.h"
 #include "hires/base/progress.h"
 #include "hires/base/spelling.h"
+#include "hires/base/text.h"
 #include "hires/imagination/local_setup.h"
 #include "hires/ros/answer/report_messages.h"
 #include "hires/ros/robot/robot_state_messages.h"
@@ -136,8 +137,15 @@ void PrintNotes(const EpisodeRecording& recording) {
   const std::string advice = recording.topics.Advice();
   if (!advice.empty()) std::cout << advice;
   for (const auto& [what, count] : recording.dropped) {
-    std::cout << fmt::format("left out {} times: {}\n", count, what);
+    std::cout << fmt::format("left out {}: {}\n", hires::base::Counted(count, "time"), what);
   }
+}
+
+void PrintUntoldJoints(const std::vector<std::string>& joints) {
+  if (joints.empty()) return;
+  std::cout << fmt::format(
+      "joint states never told of {} ({}): imagined as in the driving posture\n",
+      hires::base::Counted(joints.size(), "joint"), hires::base::Join(joints, ", "));
 }
 
 bool HasSamples(const EpisodeRecording& recording) {
@@ -164,6 +172,16 @@ void RequireState(const EpisodeReplay& replay, const EpisodeRecording& recording
       ListOfDropped(recording)));
 }
 
+/// Joint states of another robot would pass for those of one that keeps its arms still.
+void RequireJoints(const EpisodeReplay& replay, const EpisodeConfig& config,
+                   const EpisodeRecording& recording) {
+  if (recording.knows_joints) return;
+  throw ConfigError(fmt::format(
+      "{}: {} tells of none of the joints of this robot's arms and torso, such as '{}'; record its "
+      "joint states, or say by --names on which topic they are",
+      replay.bag, config.Of("joint_states").topic, recording.untold_joints.front()));
+}
+
 [[noreturn]] void FailWithoutSteps(const EpisodeReplay& replay) {
   throw ConfigError(fmt::format(
       "{}: nobody asked for an action in it, and the robot moved by nothing that could be "
@@ -177,6 +195,7 @@ ordered_json ReplayedJson(const EpisodeReplay& replay, const EpisodeRecording& r
                     {"rollouts", replay.params.rollouts},
                     {"seed", replay.params.seed},
                     {"dropped", recording.dropped},
+                    {"untold_joints", recording.untold_joints},
                     {"episodes", ordered_json::array()}};
   return json;
 }
@@ -203,7 +222,9 @@ int ReplayEpisode(const EpisodeReplay& replay, const EpisodeConfig& config,
           .setup;
   const EpisodeRecording recording = ReadEpisodeRecording(replay.bag, config, setup);
   RequireState(replay, recording);
+  RequireJoints(replay, config, recording);
   PrintNotes(recording);
+  PrintUntoldJoints(recording.untold_joints);
   ordered_json json = ReplayedJson(replay, recording);
   for (const Episode& episode : recording.episodes) {
     const std::vector<EpisodeStep> steps = reports::StepsOf(episode, setup, config);

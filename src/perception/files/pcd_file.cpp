@@ -9,10 +9,12 @@
 #include <cstdint>
 #include <cstdlib>
 #include <cstring>
+#include <limits>
 #include <sstream>
 
 #include "hires/base/check.h"
 #include "hires/base/error.h"
+#include "hires/base/log.h"
 #include "hires/base/short_text.h"
 #include "hires/base/text.h"
 
@@ -44,6 +46,11 @@ bool IsText(const std::string& line) {
                       [](unsigned char c) { return c < 0x20 && c != '\t' && c != '\r'; });
 }
 
+/// How Windows writes what is no number, or none that is finite: 1.#QNAN, -1.#IND00, 1.#INF.
+bool IsWindowsNan(const std::string& word) {
+  return word.rfind("1.#", 0) == 0 || word.rfind("-1.#", 0) == 0;
+}
+
 class PcdReader {
  public:
   explicit PcdReader(const std::string& path)
@@ -63,6 +70,7 @@ class PcdReader {
   void CheckHeader();
   std::uint64_t WholeNumber(const std::string& word, std::uint64_t least, std::uint64_t most) const;
   std::array<const Field*, 3> Xyz() const;
+  void WarnOfRest();
   void ReadText(PointCloud* cloud);
   void ReadBinary(PointCloud* cloud);
   void ReadCompressed(PointCloud* cloud);
@@ -93,7 +101,27 @@ PointCloud PcdReader::Read() {
   } else {
     ReadCompressed(&cloud);
   }
+  WarnOfRest();
   return cloud;
+}
+
+/// Points behind the last one that the header speaks of, as of files that were joined by hand.
+void PcdReader::WarnOfRest() {
+  std::uint64_t more = 0;
+  if (header_.data == "ascii") {
+    for (std::string text; std::getline(in_, text);) {
+      more += text.find_first_not_of(" \t\r") != std::string::npos ? 1 : 0;
+    }
+  } else if (header_.data == "binary") {
+    const std::vector<char> rest = ReadBytes(static_cast<std::size_t>(in_.rdbuf()->in_avail()));
+    const bool is_padding = std::all_of(rest.begin(), rest.end(), [](char c) { return c == 0; });
+    if (!is_padding) more = rest.size() / std::max<std::size_t>(header_.point_size, 1);
+  }
+  if (more == 0) return;
+  base::Log(base::LogLevel::kWarn,
+            fmt::format("{}: {} more points follow the {} that its header says: left out; correct "
+                        "WIDTH, HEIGHT and POINTS if they belong to it",
+                        path_, more, header_.points));
 }
 
 void PcdReader::ReadHeader() {
@@ -114,6 +142,8 @@ void PcdReader::ReadHeader() {
 
 void PcdReader::TakeLine(const std::vector<std::string>& words) {
   const std::string& key = words[0];
+  if (line_ == 1 && key == "ply")
+    Fail("is a cloud in PLY, wanted .pcd; `pcl_ply2pcd IN.ply OUT.pcd` of PCL's tools makes one");
   if (key == "FIELDS" || key == "COLUMNS") {
     for (std::size_t i = 1; i < words.size(); ++i) header_.fields.push_back({words[i]});
   } else if (key == "SIZE" || key == "TYPE" || key == "COUNT") {
@@ -199,7 +229,7 @@ std::array<const Field*, 3> PcdReader::Xyz() const {
   for (const Field& field : header_.fields) names.push_back(field.name);
   for (int axis = 0; axis < 3; ++axis) {
     for (const Field& field : header_.fields)
-      if (field.name == kNames[axis]) found[axis] = &field;
+      if (field.name == kNames[axis] && found[axis] == nullptr) found[axis] = &field;
     if (found[axis] == nullptr) {
       Fail(fmt::format("has no field {}; it has {}", kNames[axis],
                        names.empty() ? "none" : base::Shortened(base::Join(names, ", "))));
@@ -229,8 +259,11 @@ void PcdReader::ReadText(PointCloud* cloud) {
       const std::string& word = words[xyz[axis]->offset];
       char* end = nullptr;
       cloud->points[i][axis] = std::strtof(word.c_str(), &end);
-      if (*end != '\0')
+      if (IsWindowsNan(word)) {
+        cloud->points[i][axis] = std::numeric_limits<float>::quiet_NaN();
+      } else if (*end != '\0') {
         FailLine(fmt::format("{} is '{}', no number", xyz[axis]->name, base::Shortened(word, 40)));
+      }
     }
   }
 }

@@ -175,6 +175,8 @@ bool DataReader::SkipBlanks() {
       Next();
     } else if (StartsWith(kByteOrderMark)) {  // some editors write one, joined files have several
       Skip(3);
+    } else if (const std::size_t length = WideBlankLength(text_.substr(position_)); length > 0) {
+      Skip(static_cast<int>(length));
     } else if (Peek() == ';') {
       SkipLine();
     } else if (StartsWith("#|")) {
@@ -451,7 +453,7 @@ void DataReader::ReadToken() {
 bool DataReader::ReadTokenText(std::string* token) {
   const Place begin = here_;
   bool is_plain = true;
-  while (!AtEnd() && !EndsToken(Peek())) {
+  while (!AtEnd() && !EndsToken(Peek()) && WideBlankLength(text_.substr(position_)) == 0) {
     const char c = NextInText("symbol", begin);
     if (c == '|') {
       ReadBars(token);

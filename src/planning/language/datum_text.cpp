@@ -102,6 +102,13 @@ bool NeedsEscape(char c) {
          c == '\x7f';
 }
 
+bool HasWideBlank(std::string_view name) {
+  for (std::size_t i = 0; i < name.size(); ++i) {
+    if (WideBlankLength(name.substr(i)) > 0) return true;
+  }
+  return false;
+}
+
 }  // namespace
 
 TokenKind KindOfToken(std::string_view token) {
@@ -112,7 +119,16 @@ TokenKind KindOfToken(std::string_view token) {
 
 bool NeedsBars(std::string_view name) {
   return name.empty() || KindOfToken(name) != TokenKind::kSymbol || name[0] == '#' ||
-         name.substr(0, 3) == kByteOrderMark || std::any_of(name.begin(), name.end(), NeedsEscape);
+         name.substr(0, 3) == kByteOrderMark || HasWideBlank(name) ||
+         std::any_of(name.begin(), name.end(), NeedsEscape);
+}
+
+std::size_t WideBlankLength(std::string_view text) {
+  if (text.substr(0, 2) == "\xC2\xA0") return 2;
+  if (text.substr(0, 3) == "\xE3\x80\x80") return 3;
+  if (text.size() < 3 || text.substr(0, 2) != "\xE2\x80") return 0;
+  const auto last = static_cast<unsigned char>(text[2]);
+  return (last >= 0x80 && last <= 0x8B) || last == 0xAF ? 3 : 0;
 }
 
 bool EndsToken(char c) {

@@ -24,6 +24,10 @@ bool NeedsBars(std::string_view name);
 /// Ends a token where it stands: white space, parentheses, quotes, a comma, a semicolon.
 bool EndsToken(char c);
 
+/// Bytes of the blank beyond ASCII that begins `text`, as texts from web pages and word processors
+/// have them: U+00A0, U+2000 to U+200B, U+202F, U+3000; 0: there is none.
+std::size_t WideBlankLength(std::string_view text);
+
 /// Bytes of the longest beginning of `text` that is UTF-8.
 std::size_t ValidUtf8Length(std::string_view text);
 

@@ -45,8 +45,9 @@ class EffectReader {
     RequireList(scope_->spot, datum, "an effect such as (near ?a ?b) or (not (near ?a ?b))");
     const std::string head(datum.Head());
     if (datum.items.empty()) return;
-    if (head == "and") {
-      for (std::size_t i = 1; i < datum.items.size(); ++i) ReadInto(datum.items[i], group);
+    if (head == "and" || LacksAnd(datum)) {
+      for (std::size_t i = head == "and" ? 1 : 0; i < datum.items.size(); ++i)
+        ReadInto(datum.items[i], group);
     } else if (head == "forall") {
       ReadForall(datum, *group);
     } else if (head == "when") {

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <map>
 #include <utility>
 
@@ -20,18 +21,37 @@ void RequireParts(const HddlScope& scope, const Datum& datum, std::size_t count,
   scope.spot.Fail(datum, fmt::format("{} came, wanted {}", Excerpt(datum), wanted));
 }
 
-Formula ReadParts(Kind kind, const Datum& datum, HddlScope* scope) {
+/// @param first  of the items that are parts.
+Formula ReadParts(Kind kind, const Datum& datum, HddlScope* scope, std::size_t first = 1) {
   Formula formula;
   formula.kind = kind;
   formula.place = datum.place;
-  for (std::size_t i = 1; i < datum.items.size(); ++i) {
+  for (std::size_t i = first; i < datum.items.size(); ++i) {
     formula.parts.push_back(ReadCondition(datum.items[i], scope));
   }
   return formula;
 }
 
+bool IsComparison(const std::string& head) {
+  return head == "<" || head == ">" || head == "<=" || head == ">=";
+}
+
+bool IsNumeric(const Datum& datum) {
+  const auto is_value = [](const Datum& item) {
+    return item.IsList() || item.kind == Datum::Kind::kInteger || item.kind == Datum::Kind::kReal;
+  };
+  return std::any_of(datum.items.begin() + 1, datum.items.end(), is_value);
+}
+
+[[noreturn]] void FailOnNumbers(const Datum& datum, const HddlScope& scope) {
+  scope.spot.Fail(datum, fmt::format("{} compares numbers, which no condition can: functions say "
+                                     "what actions cost; write what matters as a predicate",
+                                     Excerpt(datum)));
+}
+
 Formula ReadEqual(const Datum& datum, HddlScope* scope) {
   RequireParts(*scope, datum, 2, "(= a b)");
+  if (IsNumeric(datum)) FailOnNumbers(datum, *scope);
   Formula formula;
   formula.kind = Kind::kEqual;
   formula.term = datum;
@@ -226,6 +246,7 @@ bool IsSortWord(std::string_view word) {
 Formula ReadCondition(const Datum& datum, HddlScope* scope) {
   RequireList(scope->spot, datum, "a condition such as (near ?a ?b) or (and ...)");
   if (datum.items.empty()) return MakeSequence({});
+  if (LacksAnd(datum)) return ReadParts(Kind::kSequence, datum, scope, 0);
   const std::string head(datum.Head());
   if (head == "and") return ReadParts(Kind::kSequence, datum, scope);
   if (head == "or") return ReadParts(Kind::kOr, datum, scope);
@@ -240,6 +261,7 @@ Formula ReadCondition(const Datum& datum, HddlScope* scope) {
   if (head == "forall") return ReadQuantifier(Kind::kForall, datum, scope);
   if (head == "exists") return ReadQuantifier(Kind::kExists, datum, scope);
   if (head == "=") return ReadEqual(datum, scope);
+  if (IsComparison(head)) FailOnNumbers(datum, *scope);
   if (IsSortWord(head) && scope->vocabulary->predicates.count(head) == 0) {
     return ReadSort(datum, scope);
   }

@@ -21,6 +21,12 @@ namespace {
 
 using Sections = std::map<std::string, std::vector<const Datum*>>;
 
+bool IsPddlOnly(const std::string& keyword) {
+  static const std::set<std::string> keywords{":durative-action", ":derived", ":axiom", ":process",
+                                              ":event"};
+  return keywords.count(keyword) > 0;
+}
+
 /// The sections of a definition by their keyword.
 /// @param several  Keywords that may stand more than once.
 Sections ReadSections(const HddlSpot& spot, const Datum& form,
@@ -32,6 +38,9 @@ Sections ReadSections(const HddlSpot& spot, const Datum& form,
     if (keyword.empty() || keyword[0] != ':') {
       spot.Fail(section, fmt::format("{} came, wanted a section such as ({} ...)", Excerpt(section),
                                      known[0]));
+    }
+    if (IsPddlOnly(keyword)) {
+      spot.Fail(section, fmt::format("({} ...) of PDDL is not supported; do without it", keyword));
     }
     if (std::find(known.begin(), known.end(), keyword) == known.end()) {
       spot.Fail(section, base::UnknownName("section", keyword, known));
@@ -320,14 +329,20 @@ class ProblemReader {
       ReadObjects(spot_.Within("(:objects ...)"), *section, &vocabulary_);
     }
     vocabulary_.has_all_objects = true;
-    CheckOpenObjects(spot_, domain_.source, vocabulary_);
-    ReadTasks(sections);
-    if (const Datum* section = OneOf(sections, ":goal")) ReadGoal(*section);
-    if (const Datum* section = OneOf(sections, ":metric")) CheckMetric(*section);
+    Faults faults;
+    faults.Collect([&] { CheckOpenObjects(spot_, domain_.source, vocabulary_); });
+    faults.Collect([&] { ReadTasks(sections); });
+    if (const Datum* section = OneOf(sections, ":goal")) {
+      faults.Collect([&] { ReadGoal(*section); });
+    }
+    if (const Datum* section = OneOf(sections, ":metric")) {
+      faults.Collect([&] { CheckMetric(*section); });
+    }
     // After the conditions, which may have made types of their own by (either ...).
     problem_.facts =
         TypeFacts(spot_.Within("(:objects ...)"), vocabulary_, domain_.vocabulary.get());
-    if (const Datum* section = OneOf(sections, ":init")) ReadInit(*section);
+    if (const Datum* section = OneOf(sections, ":init")) ReadInit(*section, &faults);
+    faults.Require();
     return std::move(problem_);
   }
 
@@ -398,20 +413,24 @@ class ProblemReader {
                fmt::format("{} came, wanted (:metric minimize (total-cost))", Excerpt(section)));
   }
 
-  void ReadInit(const Datum& section) {
+  void ReadInit(const Datum& section, Faults* faults) {
     const HddlSpot spot = spot_.Within("(:init ...)");
     for (std::size_t i = 1; i < section.items.size(); ++i) {
-      const Datum& fact = RequireList(spot, section.items[i], "a fact such as (at robot dock)");
-      if (fact.Head() == "=") {
-        ReadValue(spot, fact);
-      } else if (fact.Head() == "not" && fact.items.size() == 2) {
-        ReadDenied(spot, fact.items[1]);
-      } else {
-        CheckFact(spot, fact);
-        problem_.facts.push_back(fact);
-      }
+      faults->Collect([&] { ReadInitial(spot, section.items[i]); });
     }
-    CheckDenied(spot);
+    faults->Collect([&] { CheckDenied(spot); });
+  }
+
+  void ReadInitial(const HddlSpot& spot, const Datum& datum) {
+    const Datum& fact = RequireList(spot, datum, "a fact such as (at robot dock)");
+    if (fact.Head() == "=") {
+      ReadValue(spot, fact);
+    } else if (fact.Head() == "not" && fact.items.size() == 2) {
+      ReadDenied(spot, fact.items[1]);
+    } else {
+      CheckFact(spot, fact);
+      problem_.facts.push_back(fact);
+    }
   }
 
   void CheckDenied(const HddlSpot& spot) const {

@@ -70,6 +70,11 @@ std::vector<std::string> ReadTypes(const HddlSpot& spot, const Datum& type) {
   return types;
 }
 
+/// An entry of a list whose entries are separated by commas, which are no part of HDDL.
+const Datum& WithoutComma(const Datum& item) {
+  return item.Head() == "unquote" && item.items.size() == 2 ? item.items[1] : item;
+}
+
 /// `-`, or glued to what follows, as in `?p -plate`.
 bool IsDash(const Datum& item) {
   return item.kind == Datum::Kind::kSymbol && item.text.compare(0, 1, "-") == 0;
@@ -77,10 +82,10 @@ bool IsDash(const Datum& item) {
 
 /// What stands behind the dash at `*index`, to which that moves.
 Datum TypeBehindDash(const HddlSpot& spot, const Datum& list, std::size_t* index) {
-  Datum dash = list.items[*index];
+  Datum dash = WithoutComma(list.items[*index]);
   if (dash.text.size() == 1) {
     if (++*index == list.items.size()) spot.Fail(dash, "a '-' has no type behind it; add one");
-    return list.items[*index];
+    return WithoutComma(list.items[*index]);
   }
   dash.text.erase(0, 1);
   ++dash.place.column;
@@ -142,7 +147,7 @@ std::vector<HddlTyped> ReadTypedList(const HddlSpot& spot, const Datum& list, st
   std::vector<HddlTyped> typed;
   std::size_t untyped = 0;  // first entry whose type is still to come
   for (std::size_t i = begin; i < list.items.size(); ++i) {
-    const Datum& item = list.items[i];
+    const Datum& item = WithoutComma(list.items[i]);
     if (!IsDash(item)) {
       RequireKind(spot, item, kind);
       typed.push_back({&item, {}, item.place});
@@ -206,12 +211,18 @@ const Datum* HddlFields::FindOneOf(const std::vector<std::string>& names) const 
   return found;
 }
 
+bool LacksAnd(const Datum& datum) {
+  return datum.IsList() && !datum.items.empty() && datum.items[0].IsList() &&
+         !datum.items[0].items.empty();
+}
+
 std::vector<const Datum*> Conjuncts(const HddlSpot& spot, const Datum& datum) {
   RequireList(spot, datum, "(and ...) or ()");
   if (datum.items.empty()) return {};
-  if (datum.Head() != "and") return {&datum};
+  if (datum.Head() != "and" && !LacksAnd(datum)) return {&datum};
   std::vector<const Datum*> parts;
-  for (std::size_t i = 1; i < datum.items.size(); ++i) parts.push_back(&datum.items[i]);
+  for (std::size_t i = LacksAnd(datum) ? 0 : 1; i < datum.items.size(); ++i)
+    parts.push_back(&datum.items[i]);
   return parts;
 }
 

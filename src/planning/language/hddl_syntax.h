@@ -33,7 +33,8 @@ struct HddlTyped {
   Place type_place;
 };
 
-/// Reads `a b - t c - (either t u) d`, items `begin` and after of a list; `-t` is read as `- t`.
+/// Reads `a b - t c - (either t u) d`, items `begin` and after of a list; `-t` is read as `- t`,
+/// and commas between entries are passed over.
 /// @param kind  kSymbol for names, kVariable for parameters.
 /// @throws ConfigError also where a name stands twice (`unique`).
 std::vector<HddlTyped> ReadTypedList(const HddlSpot& spot, const Datum& list, std::size_t begin,
@@ -57,7 +58,10 @@ class HddlFields {
   std::map<std::string, const Datum*> values_;
 };
 
-/// The items of `(and a b ...)`, of `()` none, else the datum itself.
+/// `((a) (b) ...)`, as SHOP2 has it, where `(and (a) (b) ...)` was to be written.
+bool LacksAnd(const Datum& datum);
+
+/// The items of `(and a b ...)`, with or without the `and`, of `()` none, else the datum itself.
 std::vector<const Datum*> Conjuncts(const HddlSpot& spot, const Datum& datum);
 
 /// The form `(define (domain name) ...)` or `(define (problem name) ...)`, the only one of its kind

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cstring>
 
 #include "hires/base/keys.h"
 #include "hires/base/spelling.h"
@@ -11,6 +12,10 @@
 
 namespace hires::planning::hddl {
 namespace {
+
+// No name in a file begins with %.
+constexpr char kTypePrefix[] = "%type-";
+constexpr char kValuePrefix[] = "%value-";
 
 // A chain of types costs the square of its length, and each object a fact for each of its types.
 constexpr std::size_t kMaxTypes = 1000;
@@ -257,6 +262,11 @@ const HddlVocabulary::Signature& CheckTerm(const HddlSpot& spot, const Datum& te
     spot.Fail(term.items[0], base::UnknownName(kind, name, base::KeysOf(signatures)));
   }
   const HddlVocabulary::Signature& signature = found->second;
+  const auto is_dash = [](const Datum& item) { return item.IsSymbol("-"); };
+  if (std::any_of(term.items.begin(), term.items.end(), is_dash)) {
+    spot.Fail(term, fmt::format("{} has types; write them in :parameters, and the names alone here",
+                                Excerpt(term)));
+  }
   if (term.items.size() - 1 != signature.types.size()) {
     spot.Fail(term,
               fmt::format("{} '{}' has {} in {}, its declaration has {}; make them agree",
@@ -277,14 +287,14 @@ int CheckArgument(const HddlSpot& spot, const Datum& argument, int wanted,
     const auto found = variables.find(argument.text);
     if (found != variables.end()) return found->second;
     spot.Fail(argument, base::UnknownName("variable", argument.text, base::KeysOf(variables)) +
-                            " Declare it among the parameters");
+                            "; declare it among the parameters");
   }
   const std::string& name = RequireName(spot, argument, "an object or a variable");
   const auto found = vocabulary->objects.find(name);
   if (found != vocabulary->objects.end()) return found->second;
   if (vocabulary->has_all_objects) {
     spot.Fail(argument, base::UnknownName("object", name, base::KeysOf(vocabulary->objects)) +
-                            " Declare it among the constants or objects");
+                            "; declare it among the constants or objects");
   }
   vocabulary->open_objects.push_back({name, wanted, argument.place, spot.construct});
   return wanted;
@@ -299,7 +309,7 @@ void CheckOpenObjects(const HddlSpot& spot, const std::string& domain_source,
     const auto found = vocabulary.objects.find(open.name);
     if (found == vocabulary.objects.end()) {
       named.Fail(at, base::UnknownName("object", open.name, base::KeysOf(vocabulary.objects)) +
-                         fmt::format(" Declare it among the constants, or among the objects of {}",
+                         fmt::format("; declare it among the constants, or among the objects of {}",
                                      spot.construct));
     }
     if (IsA(vocabulary, found->second, open.type)) continue;
@@ -311,10 +321,22 @@ void CheckOpenObjects(const HddlSpot& spot, const std::string& domain_source,
 }
 
 std::string TypePredicate(const HddlVocabulary& vocabulary, int type) {
-  return "%type-" + vocabulary.types[type].name;
+  return kTypePrefix + vocabulary.types[type].name;
 }
 
-std::string ValuePredicate(const std::string& function) { return "%value-" + function; }
+std::string ValuePredicate(const std::string& function) { return kValuePrefix + function; }
+
+std::string AsWritten(const Datum& atom) {
+  const std::string head(atom.Head());
+  if (head.rfind(kTypePrefix, 0) == 0 && atom.items.size() == 2) {
+    return fmt::format("({} - {})", ToString(atom.items[1]), head.substr(std::strlen(kTypePrefix)));
+  }
+  if (head.rfind(kValuePrefix, 0) != 0 || atom.items.size() < 2) return ToString(atom);
+  Datum term = atom;
+  term.items[0] = MakeSymbol(head.substr(std::strlen(kValuePrefix)));
+  term.items.pop_back();
+  return fmt::format("(= {} number)", ToString(term));
+}
 
 std::vector<Datum> TypeFacts(const HddlSpot& spot, const HddlVocabulary& vocabulary,
                              const HddlVocabulary* known) {

@@ -103,6 +103,8 @@ void CheckOpenObjects(const HddlSpot& spot, const std::string& domain_source,
 
 std::string TypePredicate(const HddlVocabulary& vocabulary, int type);  ///< "%type-place"
 std::string ValuePredicate(const std::string& function);                ///< "%value-length"
+/// An atom as HDDL would have it: "(?x - place)" and "(= (length a b) number)" for those two.
+std::string AsWritten(const Datum& atom);
 /// The atoms that say of what types objects are, in the order of declaration, without what `known`
 /// (null: nothing) says already.
 /// @pre `known` has the first of the types of `vocabulary`.

@@ -307,8 +307,8 @@ SubtaskOrder ReadSubtaskOrder(ParamReader* in, Domain::Language language) {
   if (language == Domain::Language::kHddl) {
     in->Fail(
         "subtask_order",
-        "is causal_links, but HDDL's :ordered-subtasks are always kept; leave the key out, and "
-        "write :subtasks with the :ordering that is needed");
+        "but HDDL's :ordered-subtasks are always kept; leave the key out, and write :subtasks with "
+        "the :ordering that is needed");
   }
   return SubtaskOrder::kCausalLinks;
 }

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <set>
 
 #include "hires/base/error.h"
 #include "hires/base/param_reader.h"
@@ -21,9 +22,17 @@ std::string NameOf(Domain::Language language) {
 }
 
 /// Empty where there is none.
-std::string SidecarOf(const std::string& domain_path) {
+std::string YamlBeside(const std::string& domain_path) {
   const auto path = std::filesystem::path(domain_path).replace_extension(".yaml");
   return std::filesystem::exists(path) ? path.string() : "";
+}
+
+/// Other programs keep files beside a domain under its name, too.
+bool IsSidecar(const std::string& yaml) {
+  static const std::set<std::string> kKeys{"subtask_order", "capacities", "operators", "legs"};
+  const std::vector<std::string> keys = base::ParamReader::FromFile(yaml).Keys();
+  return std::any_of(keys.begin(), keys.end(),
+                     [](const std::string& key) { return kKeys.count(key) > 0; });
 }
 
 /// Published files differ in this now and then, and belong together nevertheless.
@@ -121,14 +130,22 @@ Domain LoadDomain(const std::string& path) {
   const std::string text = base::ReadTextFile(path);
   const bool is_hddl = LanguageOf(text, path) == Domain::Language::kHddl;
   Domain domain = is_hddl ? ReadHddlDomain(text, path) : ReadShop2Domain(text, path);
-  const std::string sidecar = SidecarOf(path);
-  if (!sidecar.empty()) domain.subtask_order = LoadSubtaskOrder(sidecar, domain.language);
+  const std::string yaml = YamlBeside(path);
+  if (yaml.empty()) return domain;
+  if (IsSidecar(yaml)) {
+    domain.subtask_order = LoadSubtaskOrder(yaml, domain.language);
+  } else {
+    domain.warnings.push_back(
+        fmt::format("{}: stands beside the domain, but is no sidecar, as it has none of the keys "
+                    "subtask_order, capacities, operators, legs: passed over",
+                    yaml));
+  }
   return domain;
 }
 
 void CheckSidecar(const std::string& domain_path, const Domain& domain) {
-  const std::string sidecar = SidecarOf(domain_path);
-  if (sidecar.empty()) return;
+  const std::string sidecar = YamlBeside(domain_path);
+  if (sidecar.empty() || !IsSidecar(sidecar)) return;
   const auto only_order = std::vector<std::string>{"subtask_order"};
   if (base::ParamReader::FromFile(sidecar).Keys() == only_order) return;
   LoadOperatorData(sidecar, domain);

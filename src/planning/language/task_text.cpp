@@ -41,14 +41,19 @@ Datum ReadGroundTerm(std::string_view text, const std::string& source) {
 
 const Problem& FindProblem(const std::vector<Problem>& problems, const std::string& name) {
   std::vector<std::string> names;
+  const Problem* found = nullptr;
   for (const Problem& problem : problems) {
-    if (base::ToLower(problem.name) == base::ToLower(name)) {
-      if (!problem.fault.empty()) throw base::ConfigError(problem.fault);
-      return problem;
-    }
     names.push_back(problem.name);
+    if (base::ToLower(problem.name) != base::ToLower(name)) continue;
+    if (found != nullptr) {
+      throw base::ConfigError(fmt::format("{}: two problems are called '{}'; rename one",
+                                          problem.source, problem.name));
+    }
+    found = &problem;
   }
-  throw base::ConfigError(base::UnknownName("problem", name, names));
+  if (found == nullptr) throw base::ConfigError(base::UnknownName("problem", name, names));
+  if (!found->fault.empty()) throw base::ConfigError(found->fault);
+  return *found;
 }
 
 }  // namespace hires::planning

@@ -44,7 +44,8 @@ std::string StoppedText(const PlanResult& result, const char* why, const char* r
 std::string WhyNone(const PlanResult& result) {
   std::string text, task;
   for (const TraceEntry& end : result.deepest) {
-    const std::string at = end.task == task ? "," : fmt::format("; it got as far as {}:", end.task);
+    const bool is_same = end.task == task || end.task.empty();  // empty: all tasks are done
+    const std::string at = is_same ? "," : fmt::format("; it got as far as {}:", end.task);
     text += fmt::format("{} {}{}", at, end.reason,
                         end.where.empty() ? "" : fmt::format(" ({})", end.where));
     task = end.task;

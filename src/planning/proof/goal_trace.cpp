@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include "planning/language/hddl_vocabulary.h"
+
 namespace hires::planning {
 namespace {
 
@@ -46,7 +48,7 @@ std::string GoalTrace::Text(const Goal* goal) {
     atom.items.push_back(terms_.ToDatum(instances_.Build(*pattern, frame_)));
   }
   NameVariables(*names_, frame_, &atom);
-  return ToString(atom);
+  return hddl::AsWritten(atom);
 }
 
 }  // namespace hires::planning

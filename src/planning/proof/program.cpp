@@ -7,6 +7,7 @@
 
 #include "hires/base/error.h"
 #include "hires/base/text.h"
+#include "hires/planning/datum_reader.h"
 #include "hires/planning/shop2_reader.h"
 
 namespace hires::planning {
@@ -580,8 +581,8 @@ void Program::FailUnhandled(const std::string& name, const std::string& task) co
 }
 
 void Program::Fail(const Formula& condition, const std::string& what) const {
-  throw base::ConfigError(fmt::format("{}:{}:{}: {} {}", domain_.source, condition.place.line,
-                                      condition.place.column, ToString(condition.term), what));
+  const std::string term = condition.term.IsNil() ? "" : ToString(condition.term) + " ";
+  FailAt(domain_.source, condition.place, term + what);
 }
 
 }  // namespace hires::planning

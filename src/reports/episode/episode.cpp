@@ -15,6 +15,17 @@ std::shared_ptr<const robot::Robot> RobotOf(const imagination::ImaginationSetup&
   return {setup.scene, &setup.scene->robot};
 }
 
+std::vector<std::string> BodyJointsOf(const robot::Robot& robot) {
+  std::vector<std::string> joints;
+  const auto& body = robot.profile.upper_body;
+  if (!body) return joints;
+  if (!body->torso_joint.empty()) joints.push_back(body->torso_joint);
+  for (const auto& [name, arm] : body->arms) {
+    joints.insert(joints.end(), arm.joints.begin(), arm.joints.end());
+  }
+  return joints;
+}
+
 }  // namespace
 
 std::string ToString(ActionFate fate) {
@@ -56,7 +67,8 @@ EpisodeBuilder::EpisodeBuilder(const imagination::ImaginationSetup& setup,
     : frames_(frames),
       period_(period),
       state_(RobotOf(setup), frames, setup.sensing.robot_state, map_to_world, std::move(tree)),
-      episodes_(1) {
+      episodes_(1),
+      body_joints_(BodyJointsOf(setup.scene->robot)) {
   if (!setup.scene->has_camera()) return;
   objects_ = std::make_unique<sensing::ObjectEstimator>(setup.scene->surroundings, RobotOf(setup),
                                                         setup.sensing.memory, &state_);
@@ -71,6 +83,7 @@ void EpisodeBuilder::OnOdometry(double stamp, const std::string& frame, const st
 
 void EpisodeBuilder::OnJoints(double stamp, const robot::JointReading& reading) {
   Note("joint states", state_.OnJoints(stamp, reading));
+  for (const auto& [name, position] : reading.positions) told_joints_.insert(name);
   Sample();
 }
 
@@ -90,7 +103,12 @@ void EpisodeBuilder::OnKnownObjects(double stamp, const world::WorldState& known
 
 void EpisodeBuilder::OnGoal(const std::string& id, const base::ActionCall& action, double stamp) {
   if (!std::isfinite(stamp) || stamp <= 0.0) return Drop("goals", "its time is 0 or no number");
-  episodes_.back().actions.push_back({id, action, stamp, {}, 0.0, ActionFate::kUnknown, {}});
+  std::vector<RecordedAction>& actions = episodes_.back().actions;
+  const bool is_known = std::any_of(actions.begin(), actions.end(), [&](const auto& earlier) {
+    return earlier.id == id && earlier.begin == stamp;
+  });
+  if (is_known && !id.empty()) return Drop("goals", "recorded before");
+  actions.push_back({id, action, stamp, {}, 0.0, ActionFate::kUnknown, {}});
 }
 
 void EpisodeBuilder::OnResult(const std::string& id, double stamp, double duration, ActionFate fate,
@@ -99,7 +117,12 @@ void EpisodeBuilder::OnResult(const std::string& id, double stamp, double durati
   const auto action = std::find_if(actions.rbegin(), actions.rend(), [&](const auto& candidate) {
     return candidate.id == id && !candidate.end;
   });
-  if (action == actions.rend()) return Drop("results", "their goal was not recorded");
+  if (action == actions.rend()) {
+    const bool is_known = std::any_of(actions.begin(), actions.end(), [&](const auto& earlier) {
+      return earlier.id == id && earlier.end == stamp;
+    });
+    return Drop("results", is_known ? "recorded before" : "their goal was not recorded");
+  }
   if (!std::isfinite(stamp) || stamp < action->begin || !std::isfinite(duration)) {
     return Drop("results", "its time is before its goal's, or no number");
   }
@@ -127,6 +150,18 @@ std::string EpisodeBuilder::MissingText() const {
       return "the transform " + frames_.map + " -> " + frames_.odometry;
   }
   return "";
+}
+
+std::vector<std::string> EpisodeBuilder::UntoldJoints() const {
+  std::vector<std::string> untold;
+  for (const std::string& joint : body_joints_) {
+    if (told_joints_.count(joint) == 0) untold.push_back(joint);
+  }
+  return untold;
+}
+
+bool EpisodeBuilder::knows_joints() const {
+  return body_joints_.empty() || UntoldJoints().size() < body_joints_.size();
 }
 
 std::vector<Episode> EpisodeBuilder::Take() {

@@ -3,6 +3,7 @@
 #include <map>
 #include <memory>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -74,6 +75,10 @@ class EpisodeBuilder {
 
   /// What is still missing for a state; empty: nothing.
   std::string MissingText() const;
+  /// Joints of arms and torso of which no joint state told: they stand as in the driving posture.
+  std::vector<std::string> UntoldJoints() const;
+  bool knows_joints()
+      const;  ///< whether of one of them at least something was told, or it has none
   /// "odometry: it is not finite" -> how often.
   const std::map<std::string, int>& dropped() const { return dropped_; }
   /// All that have a sample or an action, in their order.
@@ -98,6 +103,8 @@ class EpisodeBuilder {
   std::optional<double> next_;  // [s] of the next sample
   int restarts_{0};             // of the clock, so far
   std::map<std::string, int> dropped_;
+  const std::vector<std::string> body_joints_;  // of arms and torso
+  std::set<std::string> told_joints_;
 };
 
 }  // namespace hires::reports

@@ -39,6 +39,31 @@ StepVerdict VerdictOn(bool has_succeeded, const imagination::SuccessInterval& su
   return has_succeeded ? StepVerdict::kSucceededAgainst : StepVerdict::kFailedAgainst;
 }
 
+/// Void rollouts count as failures, though they say nothing of the robot: without them. What they
+/// died of stays among the failures.
+void LeaveOutVoid(imagination::Evidence* evidence) {
+  int num_void = 0;
+  for (const auto& [failure, count] : evidence->failures) {
+    if (failure.code == base::FailureCode::kPhysicsBroke) num_void += count;
+  }
+  const int n = evidence->num_rollouts;
+  if (num_void == 0 || num_void > n) return;
+  const int num_success = static_cast<int>(std::lround(evidence->success.share * n));
+  const int num_failed = static_cast<int>(std::lround(evidence->action_failed_share * n));
+  const int num_left = n - num_void;
+  evidence->success = imagination::EstimateSuccess(std::min(num_success, num_left), num_left,
+                                                   evidence->success.kind);
+  evidence->action_failed_share =
+      num_left == 0 ? 0.0 : std::max(0.0, static_cast<double>(num_failed - num_void) / num_left);
+  evidence->num_rollouts = num_left;
+}
+
+/// Why there is nothing to compare with; empty: there is.
+std::string WhyNothing(const imagination::Evidence& evidence) {
+  if (evidence.num_rollouts > 0) return "";
+  return evidence.failures.empty() ? "no rollout was played" : "every rollout is void";
+}
+
 }  // namespace
 
 std::string ToString(StepVerdict verdict) {
@@ -65,13 +90,12 @@ std::string ToString(StepVerdict verdict) {
 
 ComparedStep CompareStep(const EpisodeStep& step, const ImaginedAction& imagined, double surprise) {
   ComparedStep compared{step, imagined, StepVerdict::kNotCompared, {}, step.why_not};
+  LeaveOutVoid(&compared.imagined.evidence);
   if (compared.why.empty()) compared.why = imagined.refusal;
-  if (compared.why.empty() && imagined.evidence.num_rollouts == 0) {
-    compared.why = "no rollout was played";
-  }
+  if (compared.why.empty()) compared.why = WhyNothing(compared.imagined.evidence);
   if (!compared.why.empty()) return compared;
   const bool has_succeeded = step.fate == ActionFate::kSucceeded;
-  compared.verdict = VerdictOn(has_succeeded, imagined.evidence.success);
+  compared.verdict = VerdictOn(has_succeeded, compared.imagined.evidence.success);
   if (!has_succeeded) return compared;
   const std::optional<Rank> rank = RankOf(imagined, step.duration);
   if (!rank) return compared;

@@ -41,9 +41,10 @@ struct ComparedStep {
 };
 
 /// Puts both together. Success of an action is what the robot said of it; that of a rollout also
-/// asks that nothing fell. The interval is sure of what it has wholly on one side of 1/2. Durations
-/// are compared where it succeeded: the chance of so low (or high) a rank among n imagined ones is
-/// that of a further one of them, (k + 1) / (n + 1), so that few rollouts can show no surprise.
+/// asks that nothing fell; void ones (physics_broke) are left out. The interval is sure of what it
+/// has wholly on one side of 1/2. Durations are compared where it succeeded: the chance of so low
+/// (or high) a rank among n imagined ones is that of a further one of them, (k + 1) / (n + 1), so
+/// that few rollouts can show no surprise.
 ComparedStep CompareStep(const EpisodeStep& step, const ImaginedAction& imagined, double surprise);
 
 /// How a step is imagined.
@@ -58,7 +59,8 @@ std::optional<ImaginedAction> ImagineStep(const imagination::ImaginationSetup& s
                                           const EpisodeStep& step, const ReplayParams& params,
                                           std::uint64_t place, const base::Crew& crew);
 
-/// One line for each step: what was imagined, what happened, verdict.
+/// One line for each step: what was imagined, what happened, verdict; below, why steps were not
+/// compared, and of what most rollouts failed.
 std::string EpisodeTable(const std::vector<ComparedStep>& steps);
 /// Verdicts counted, and how far durations were off.
 std::string EpisodeSummary(const std::vector<ComparedStep>& steps);

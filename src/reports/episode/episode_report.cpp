@@ -1,10 +1,14 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <map>
 #include <nlohmann/json.hpp>
+#include <utility>
 
 #include "base/averages.h"
+#include "hires/base/failure.h"
+#include "hires/base/text.h"
 #include "reports/episode/episode_compare.h"
 #include "reports/text/report_json.h"
 #include "reports/text/report_table.h"
@@ -42,6 +46,41 @@ std::vector<std::string> RowOf(const ComparedStep& compared, std::size_t place) 
   row.push_back(compared.percentile ? fmt::format("{:.0f} %", *compared.percentile) : "");
   row.push_back(ToString(compared.verdict));
   return row;
+}
+
+/// What was played and did not succeed, where that is half of it or more; void rollouts always.
+std::string FailuresOf(const imagination::Evidence& evidence) {
+  const bool is_mostly = evidence.num_rollouts > 0 && evidence.success.share <= 0.5;
+  std::vector<std::string> parts;
+  for (const auto& [failure, count] : evidence.failures) {
+    const bool is_void = failure.code == base::FailureCode::kPhysicsBroke;
+    if (!is_mostly && !is_void) continue;
+    parts.push_back(
+        fmt::format("{} {} {}", count, is_void ? "void by" : "failed by", base::ToString(failure)));
+  }
+  return parts.empty() ? "" : "of its rollouts " + base::Join(parts, "; ");
+}
+
+/// "steps 1, 2: its result was not recorded"; what several have in common is said once.
+std::string NotesOn(const std::vector<ComparedStep>& steps) {
+  std::vector<std::pair<std::string, std::vector<std::string>>> notes;
+  const auto add = [&](const std::string& note, std::size_t place) {
+    if (note.empty()) return;
+    auto same = std::find_if(notes.begin(), notes.end(),
+                             [&](const auto& known) { return known.first == note; });
+    if (same == notes.end()) same = notes.insert(same, {note, {}});
+    same->second.push_back(std::to_string(place));
+  };
+  for (std::size_t i = 0; i < steps.size(); ++i) {
+    add(steps[i].why, i + 1);
+    add(FailuresOf(steps[i].imagined.evidence), i + 1);
+  }
+  std::string text;
+  for (const auto& [note, places] : notes) {
+    text += fmt::format("step{} {}: {}\n", places.size() > 1 ? "s" : "", base::Join(places, ", "),
+                        note);
+  }
+  return text;
 }
 
 ordered_json ImaginedJson(const ComparedStep& compared) {
@@ -95,11 +134,7 @@ std::string EpisodeTable(const std::vector<ComparedStep>& steps) {
   std::vector<std::vector<std::string>> rows{{"#", "step", "imagined", "95 % interval", "lasting",
                                               "n", "happened", "lasted", "percentile", "verdict"}};
   for (std::size_t i = 0; i < steps.size(); ++i) rows.push_back(RowOf(steps[i], i + 1));
-  std::string text = FormatTable(rows);
-  for (std::size_t i = 0; i < steps.size(); ++i) {
-    if (!steps[i].why.empty()) text += fmt::format("step {}: {}\n", i + 1, steps[i].why);
-  }
-  return text;
+  return FormatTable(rows) + NotesOn(steps);
 }
 
 std::string EpisodeSummary(const std::vector<ComparedStep>& steps) {

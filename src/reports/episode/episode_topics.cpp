@@ -136,6 +136,24 @@ std::string ListOf(const std::vector<EpisodeTopic>& topics, TopicNeed need) {
   return text;
 }
 
+/// Topics of the types that are missing, under names that the file of topics does not have.
+std::vector<std::string> Elsewhere(const EpisodeConfig& config,
+                                   const std::vector<EpisodeTopic>& missing,
+                                   const std::vector<BagTopic>& bag) {
+  std::vector<std::string> found;
+  for (const BagTopic& candidate : bag) {
+    const auto is_known = [&](const EpisodeTopic& topic) { return topic.topic == candidate.name; };
+    const auto may_be = [&](const EpisodeTopic& topic) {
+      return topic.need != TopicNeed::kKept && topic.type == candidate.type;
+    };
+    if (candidate.num_messages == 0) continue;
+    if (std::any_of(config.topics.begin(), config.topics.end(), is_known)) continue;
+    if (std::none_of(missing.begin(), missing.end(), may_be)) continue;
+    found.push_back(fmt::format("{} ({})", candidate.name, candidate.type));
+  }
+  return found;
+}
+
 std::string CommandFor(const std::vector<EpisodeTopic>& topics) {
   std::string text = "rosbag record";
   for (const EpisodeTopic& topic : topics) {
@@ -186,6 +204,12 @@ std::string TopicCheck::Advice() const {
   if (!needed.empty()) text += "no message came on what is needed:" + needed + '\n';
   if (!helpful.empty()) text += "no message came on what helps:" + helpful + '\n';
   if (needed.empty() && helpful.empty()) return text;
+  if (!elsewhere.empty()) {
+    text += "of these types there are\n  " + base::Join(elsewhere, "\n  ") +
+            "\nif they are what is missing, name them in a names file (--names, like "
+            "config/robots/pr2_names.yaml) or a file of topics (--episode, like "
+            "config/episode.yaml)\n";
+  }
   std::vector<EpisodeTopic> all = there;
   all.insert(all.end(), missing.begin(), missing.end());
   return text +
@@ -206,6 +230,7 @@ TopicCheck CheckTopics(const EpisodeConfig& config, const std::vector<BagTopic>&
     }
     (is_there ? check.there : check.missing).push_back(topic);
   }
+  check.elsewhere = Elsewhere(config, check.missing, bag);
   return check;
 }
 

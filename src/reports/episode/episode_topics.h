@@ -69,6 +69,7 @@ struct TopicCheck {
   std::vector<EpisodeTopic> there, missing;
   std::vector<std::string>
       wrong;  ///< "topic /tf has type std_msgs/String, wanted ...", each left out
+  std::vector<std::string> elsewhere;  ///< "/odom (nav_msgs/Odometry)": may be what is missing
 
   bool Has(const std::string& role) const;
   bool is_usable() const;  ///< nothing that is needed is missing
