@@ -2,8 +2,10 @@
 """Requests that make no sense: each is answered with what is wrong, and the next good request as if
 nothing had been. Run alone, or by `rostest hires imagination_bad_input.test`."""
 
+import io
 import math
 import os
+import struct
 import sys
 import unittest
 
@@ -127,6 +129,17 @@ class ImaginationBadInputTest(unittest.TestCase):
     def test_an_unknown_motion_set(self):
         self.require_invalid(self.goal('move_base_param', [[SOUTH_TABLE], ['fsat']]),
                              'fsat', "'fast'")
+
+    def test_bytes_that_are_no_goal_do_no_harm(self):
+        whole = io.BytesIO()
+        self.msg.ImagineActionGoal(goal=self.goal()).serialize(whole)
+        whole = whole.getvalue()
+        # rospy sends the like after a message that it could not write.
+        for length in (0, 0, 1, 4, 20, 60, len(whole) - 1, 0):
+            frame = struct.pack('<I', length) + whole[:length]
+            self.client.pub_goal.impl.connections[0].socket.sendall(frame)
+            self.rospy.sleep(0.02)
+        self.require_the_answer_of_the_beginning()
 
     # The state.
 
