@@ -35,6 +35,15 @@ TEST(SplitTest, KeepsEmptyParts) {
   EXPECT_THAT(Split("", ','), ElementsAre(""));
 }
 
+TEST(SplitWordsTest, QuotesHoldBlanksTogether) {
+  EXPECT_THAT(SplitWords(" a\tb  c\n"), ElementsAre("a", "b", "c"));
+  EXPECT_THAT(SplitWords("_world:=\"/my lab/a.world\" _robot:=\"\" \"\""),
+              ElementsAre("_world:=/my lab/a.world", "_robot:=", ""));
+  EXPECT_THAT(SplitWords("a\"b c\"d"), ElementsAre("ab cd"));
+  EXPECT_THAT(SplitWords("/o\"brien's lab"), ElementsAre("/o\"brien's", "lab"));
+  EXPECT_THAT(SplitWords(" \t"), IsEmpty());
+}
+
 TEST(JoinTest, PutsTheSeparatorBetween) {
   EXPECT_EQ(Join({"a", "b", "c"}, ", "), "a, b, c");
   EXPECT_EQ(Join({"a"}, ", "), "a");
