@@ -133,7 +133,13 @@ std::string ReadTextFile(const std::string& path, std::size_t max_bytes) {
   std::error_code error;
   const std::filesystem::file_status status = std::filesystem::status(path, error);
   if (!std::filesystem::exists(status)) {
-    throw ConfigError(fmt::format("{}: no such file; check the path", path));
+    const bool is_whole = std::filesystem::path(path).is_absolute();
+    throw ConfigError(  // nodes of a launch run in ROS_HOME, not where roslaunch was called
+        is_whole
+            ? fmt::format("{}: no such file; check the path", path)
+            : fmt::format("{}: no such file in {}, where this program runs; check the path, or "
+                          "give a whole one",
+                          path, std::filesystem::current_path(error).string()));
   }
   if (!std::filesystem::is_regular_file(status)) {
     throw ConfigError(fmt::format("{}: is no regular file; name a file", path));

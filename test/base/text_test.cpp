@@ -173,6 +173,12 @@ TEST_F(ReadTextFileTest, AMissingFileIsNamed) {
               ThrowsMessage<ConfigError>(AllOf(HasSubstr(path), HasSubstr("no such file"))));
 }
 
+TEST_F(ReadTextFileTest, OfARelativePathTheFolderIsTold) {
+  EXPECT_THAT([] { ReadTextFile("no/such.world"); },
+              ThrowsMessage<ConfigError>(HasSubstr("no/such.world: no such file in " +
+                                                   std::filesystem::current_path().string())));
+}
+
 TEST_F(ReadTextFileTest, FoldersAndDevicesAreNoFiles) {
   EXPECT_THAT([&] { ReadTextFile(folder_.string()); },
               ThrowsMessage<ConfigError>(HasSubstr("no regular file")));
