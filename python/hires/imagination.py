@@ -1,7 +1,11 @@
 """The imagination client's action `imagine` as one call."""
 
+import io
+import numbers
+import operator
 import re
 import threading
+import time
 import xmlrpc.client
 from dataclasses import dataclass, field
 from typing import Dict, Optional, Tuple
@@ -15,6 +19,7 @@ from hires.failures import text_of
 from hires.msg import (ActionTemplate, Atom, ImagineAction, ImagineGoal, ImagineResult, StringList)
 from hires.srv import ImaginedRollout
 
+_BRIEF_STATES = (actionlib.CommState.WAITING_FOR_GOAL_ACK, actionlib.CommState.WAITING_FOR_RESULT)
 _ATOM = re.compile(r'\s*(\w+)\s*\(([^()]*)\)\s*')
 _OUTCOMES = {getattr(ImagineResult, name): name.lower()
              for name in ('RANKED', 'RANKED_AT_DEADLINE', 'ALL_FAILED', 'NO_WORKER',
@@ -62,8 +67,47 @@ class SavedRollout:
     events: Tuple[Tuple[float, str], ...]  # [s] since the action began, and what happened
 
 
-def _names(one_or_several):
-    return [one_or_several] if isinstance(one_or_several, str) else list(one_or_several)
+_LONGEST = 1e7  # [s] of a deadline, as the client has it
+_PATIENCE = 10.0  # [s] of the wall's clock for a goal to be accepted, and for the result of one that is over
+
+
+def _text(what, value):
+    if isinstance(value, str):
+        return value
+    raise TypeError('%s is %r, wanted text' % (what, value))
+
+
+def _names(what, one_or_several):
+    if isinstance(one_or_several, (str, bytes)):
+        one_or_several = [one_or_several]
+    try:
+        values = list(one_or_several)
+    except TypeError:
+        raise TypeError('%s is %r, wanted a name or a list of names' % (what, one_or_several)) from None
+    return [_text(what, value) for value in values]
+
+
+def _whole(what, value, most):
+    try:
+        number = operator.index(value)
+    except TypeError:
+        raise TypeError('%s is %r, wanted a whole number' % (what, value)) from None
+    if not 0 <= number <= most:
+        raise ValueError('%s is %d, wanted 0 to %d' % (what, number, most))
+    return number
+
+
+def _number(what, value):
+    if isinstance(value, numbers.Real):
+        return float(value)
+    raise TypeError('%s is %r, wanted a number' % (what, value))
+
+
+def _seconds(what, value):
+    seconds = _number(what, value)
+    if not 0.0 <= seconds <= _LONGEST:  # false for what is no number, too
+        raise ValueError('%s is %r, wanted 0 to %.0f s; 0: none' % (what, value, _LONGEST))
+    return rospy.Duration.from_sec(seconds)
 
 
 def _atom(text):
@@ -103,6 +147,8 @@ class Imagination:
 
     def __init__(self, action='imagine', wait=10.0):
         """wait: seconds of the wall's clock for the client to be there."""
+        if not rospy.core.is_initialized():
+            raise ImaginationError("this process is no node yet; call hires.init_node('my_name') first")
         # The simple client of rospy loses answers that come before its send_goal has returned.
         self._client = actionlib.ActionClient(action, ImagineAction)
         self._action, self._wait = action, wait
@@ -121,18 +167,22 @@ class Imagination:
         facts ('On(mug1, placingAreaNorthTable1)'), one or a list of them. Zeros and '' stand for the
         client's defaults.
 
-        Raises ValueError for a fact that is none, ImaginationError where nobody answers or the
-        request cannot be played; it names what is wrong.
+        Raises TypeError or ValueError for an argument that is none, ImaginationError where nobody
+        answers or the request cannot be played; it names what is wrong.
         """
-        goal = ImagineGoal(rollouts=rollouts, seed=seed, ranking=ranking, min_success=min_success,
-                           uncertainty=uncertainty, request_id=rospy.get_name(),
-                           deadline=rospy.Duration.from_sec(deadline))
-        goal.steps = [ActionTemplate(name=action, alternatives=[
-            StringList(values=_names(argument)) for argument in arguments])]
-        goal.updated_fluents = [_atom(fact) for fact in _names(facts)]
-        if robot_at:
-            goal.updated_fluents.append(Atom(predicate='RobotAt', arguments=[robot_at]))
-        for name in _names(on_tray):
+        goal = ImagineGoal(
+            rollouts=_whole('rollouts', rollouts, 2**32 - 1), seed=_whole('seed', seed, 2**64 - 1),
+            ranking=_text('ranking', ranking), min_success=_number('min_success', min_success),
+            uncertainty=_text('uncertainty', uncertainty), request_id=rospy.get_name(),
+            deadline=_seconds('deadline', deadline))
+        goal.steps = [ActionTemplate(name=_text('action', action), alternatives=[
+            StringList(values=_names('argument %d' % place, argument))
+            for place, argument in enumerate(arguments, 1)])]
+        goal.updated_fluents = [_atom(fact) for fact in _names('facts', facts)]
+        if robot_at is not None:
+            goal.updated_fluents.append(
+                Atom(predicate='RobotAt', arguments=[_text('robot_at', robot_at)]))
+        for name in _names('on_tray', on_tray):
             goal.updated_fluents.append(Atom(predicate='On', arguments=[name, 'trayArea1']))
         return self._answer(self._result(goal))
 
@@ -146,7 +196,7 @@ class Imagination:
         name = self._action.rpartition('/')[0]
         name = name + '/imagined_rollout' if name else 'imagined_rollout'
         try:
-            answer = rospy.ServiceProxy(name, ImaginedRollout)(rospy.get_name(), which)
+            answer = rospy.ServiceProxy(name, ImaginedRollout)(rospy.get_name(), str(which))
         except rospy.ServiceException as error:
             raise ImaginationError("nobody serves '%s' (%s); start it: roslaunch hires imagination.launch"
                                    % (rospy.resolve_name(name), error)) from error
@@ -156,10 +206,10 @@ class Imagination:
                             events=tuple(zip(answer.times, answer.events)))
 
     def _result(self, goal):
+        # Where a message cannot be written, rospy would send its beginning before the next one.
+        goal.serialize(io.BytesIO())
         if not self._is_connected.wait(self._wait):
-            raise ImaginationError(
-                "nobody serves the action '%s'; start it: roslaunch hires imagination.launch" %
-                rospy.resolve_name(self._action))
+            raise ImaginationError(self._why_nobody())
         done = threading.Event()
 
         def on_transition(handle):
@@ -167,12 +217,20 @@ class Imagination:
                 done.set()
 
         handle = self._client.send_goal(goal, on_transition)
+        give_up = time.monotonic() + _PATIENCE
         try:
             while not done.wait(0.1):
+                if rospy.is_shutdown():
+                    raise ImaginationError('this node was shut down during the request')
                 # Without a server there will be no result.
-                if rospy.is_shutdown() or not self._client.pub_goal.get_num_connections():
+                if not self._client.pub_goal.get_num_connections():
                     raise ImaginationError('the imagination client went away during the request; '
                                            'see its log, then ask again')
+                if handle.get_comm_state() not in _BRIEF_STATES:
+                    give_up = time.monotonic() + _PATIENCE
+                elif time.monotonic() > give_up:
+                    raise ImaginationError('the imagination client did not accept the request, or its answer '
+                                           'was lost; see its log, then ask again')
         finally:
             if not done.is_set():
                 handle.cancel()
@@ -181,6 +239,14 @@ class Imagination:
             raise ImaginationError('the imagination client was started anew during the request; '
                                    'ask again')
         return result
+
+    def _why_nobody(self):
+        if rospy.get_rostime().is_zero():  # servers tell that they are there by ROS time
+            return ('/use_sim_time is true at %s, and nobody publishes /clock: start what simulates the '
+                    'time, or, where that has ended, rosparam set use_sim_time false' %
+                    rosgraph.get_master_uri())
+        return ("nobody serves the action '%s'; start it: roslaunch hires imagination.launch" %
+                rospy.resolve_name(self._action))
 
     @staticmethod
     def _answer(result):

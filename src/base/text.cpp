@@ -65,6 +65,27 @@ std::vector<std::string> Split(std::string_view text, char separator) {
   return parts;
 }
 
+std::vector<std::string> SplitWords(std::string_view text) {
+  std::vector<std::string> words;
+  bool is_inside = false;  // of a word
+  for (std::size_t at = 0; at < text.size(); ++at) {
+    if (std::isspace(static_cast<unsigned char>(text[at])) != 0) {
+      is_inside = false;
+      continue;
+    }
+    if (!is_inside) words.emplace_back();
+    is_inside = true;
+    const std::size_t close = text[at] == '"' ? text.find('"', at + 1) : std::string_view::npos;
+    if (close == std::string_view::npos) {
+      words.back() += text[at];
+    } else {
+      words.back() += text.substr(at + 1, close - at - 1);
+      at = close;
+    }
+  }
+  return words;
+}
+
 std::string Join(const std::vector<std::string>& parts, std::string_view separator) {
   return fmt::format("{}", fmt::join(parts, separator));
 }
@@ -123,7 +144,13 @@ std::string ReadTextFile(const std::string& path, std::size_t max_bytes) {
   std::error_code error;
   const std::filesystem::file_status status = std::filesystem::status(path, error);
   if (!std::filesystem::exists(status)) {
-    throw ConfigError(fmt::format("{}: no such file; check the path", path));
+    const bool is_whole = std::filesystem::path(path).is_absolute();
+    throw ConfigError(  // nodes of a launch run in ROS_HOME, not where roslaunch was called
+        is_whole
+            ? fmt::format("{}: no such file; check the path", path)
+            : fmt::format("{}: no such file in {}, where this program runs; check the path, or "
+                          "give a whole one",
+                          path, std::filesystem::current_path(error).string()));
   }
   if (!std::filesystem::is_regular_file(status)) {
     throw ConfigError(fmt::format("{}: is no regular file; name a file", path));

@@ -35,6 +35,15 @@ TEST(SplitTest, KeepsEmptyParts) {
   EXPECT_THAT(Split("", ','), ElementsAre(""));
 }
 
+TEST(SplitWordsTest, QuotesHoldBlanksTogether) {
+  EXPECT_THAT(SplitWords(" a\tb  c\n"), ElementsAre("a", "b", "c"));
+  EXPECT_THAT(SplitWords("_world:=\"/my lab/a.world\" _robot:=\"\" \"\""),
+              ElementsAre("_world:=/my lab/a.world", "_robot:=", ""));
+  EXPECT_THAT(SplitWords("a\"b c\"d"), ElementsAre("ab cd"));
+  EXPECT_THAT(SplitWords("/o\"brien's lab"), ElementsAre("/o\"brien's", "lab"));
+  EXPECT_THAT(SplitWords(" \t"), IsEmpty());
+}
+
 TEST(JoinTest, PutsTheSeparatorBetween) {
   EXPECT_EQ(Join({"a", "b", "c"}, ", "), "a, b, c");
   EXPECT_EQ(Join({"a"}, ", "), "a");
@@ -162,6 +171,12 @@ TEST_F(ReadTextFileTest, AMissingFileIsNamed) {
   const std::string path = (folder_ / "nowhere.txt").string();
   EXPECT_THAT([&] { ReadTextFile(path); },
               ThrowsMessage<ConfigError>(AllOf(HasSubstr(path), HasSubstr("no such file"))));
+}
+
+TEST_F(ReadTextFileTest, OfARelativePathTheFolderIsTold) {
+  EXPECT_THAT([] { ReadTextFile("no/such.world"); },
+              ThrowsMessage<ConfigError>(HasSubstr("no/such.world: no such file in " +
+                                                   std::filesystem::current_path().string())));
 }
 
 TEST_F(ReadTextFileTest, FoldersAndDevicesAreNoFiles) {

@@ -6,6 +6,7 @@
 #include <sys/socket.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
@@ -121,6 +122,16 @@ TEST(RobotNeedsTest, ARobotThatDoesNotTellOfItsMotorsNeedNot) {
   hires::control::RobotNames names = Needs().names;
   names.motors_halted.clear();
   EXPECT_EQ(NeedsOf(names, Types(), {}).topics.size(), Needs().topics.size() - 1);
+}
+
+TEST(RobotNeedsTest, ALinkThatIsTwoThingsIsWantedOnce) {
+  hires::robot::RobotProfile profile = Profile();
+  profile.laser_link = profile.tray_link;
+  for (auto& [name, arm] : profile.upper_body->arms) arm.tool_link = arm.palm_link;
+  std::vector<std::string> links = LinksOf(profile);
+  std::sort(links.begin(), links.end());
+  EXPECT_EQ(std::adjacent_find(links.begin(), links.end()), links.end());
+  EXPECT_EQ(links.size(), LinksOf(Profile()).size() - 1 - profile.upper_body->arms.size());
 }
 
 TEST(JudgeRobotTest, AHealthyRobotHasNoFindings) { EXPECT_THAT(Codes(HealthyView()), IsEmpty()); }

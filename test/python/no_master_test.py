@@ -19,6 +19,10 @@ class NoMasterTest(unittest.TestCase):
                                         'no master answers at %s .*; start one' % uri):
                 hires.init_node('nobody')
 
+    def test_who_is_no_node_yet_is_told_how_to_become_one(self):
+        with self.assertRaisesRegex(hires.ImaginationError, 'no node yet; call hires.init_node'):
+            hires.Imagination()
+
     def test_the_example_that_drives_says_how_it_is_called(self):
         example = os.path.join(os.path.dirname(__file__), '..', '..', 'examples', 'ask_before_driving.py')
 

@@ -94,6 +94,16 @@ class AskBeforeDrivingTest(unittest.TestCase):
         imagination = self.hires.Imagination()
         with self.assertRaisesRegex(ValueError, "'RobotAt home' is no fact"):
             imagination.ask('move_base', AREA, facts=['RobotAt home'])
+        for wrong, what in (({'robot_at': (0.8, 0.8)}, 'robot_at is .*0.8'), ({'rollouts': '4'}, 'rollouts'),
+                            ({'seed': 2**64}, 'seed is'), ({'deadline': float('nan')}, 'deadline is nan'),
+                            ({'min_success': None}, 'min_success'), ({'on_tray': [7]}, 'on_tray is 7'),
+                            ({'uncertainty': {}}, 'uncertainty'), ({'facts': 3}, 'facts'),
+                            ({'ranking': '\udc80'}, 'udc80')):
+            with self.assertRaisesRegex((TypeError, ValueError), what):
+                imagination.ask('move_base', AREA, **wrong)
+        with self.assertRaisesRegex(TypeError, 'argument 1 is 7'):
+            imagination.ask('move_base', 7, robot_at=HOME)
+        # None of them got onto the way to the client, which the next one takes.
         with self.assertRaisesRegex(self.hires.ImaginationError, 'nowhere'):
             imagination.ask('move_base', 'nowhere', robot_at=HOME)
         with self.assertRaisesRegex(self.hires.ImaginationError, "'/elsewhere'.*imagination.launch"):

@@ -144,6 +144,7 @@ class ImaginationBadFilesTest(unittest.TestCase):
                 ('imagination_client', '_workers:=many', '~workers is many, wanted a whole number'),
                 ('sim_worker', '_index:=257',
                  '~index is 257, wanted a whole number between 1 and 256'),
+                ('imagination_client', '_localisation:=my pose', '[my pose]'),  # no topic's name
                 ('sim_worker', '_world:=3', '~world is 3, wanted text')):
             with self.subTest(argument=argument):
                 self.require_refusal(node, [argument], text)

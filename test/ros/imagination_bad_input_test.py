@@ -2,8 +2,10 @@
 """Requests that make no sense: each is answered with what is wrong, and the next good request as if
 nothing had been. Run alone, or by `rostest hires imagination_bad_input.test`."""
 
+import io
 import math
 import os
+import struct
 import sys
 import unittest
 
@@ -12,7 +14,7 @@ sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), 'sup
 from action_goal import ActionGoal  # noqa: E402
 from failures import text_of  # noqa: E402
 from imagination_system import ImaginationSystem  # noqa: E402
-from ros_processes import LIMIT  # noqa: E402
+from ros_processes import LIMIT, wait_until  # noqa: E402
 from test_run import run_test  # noqa: E402
 
 EAST_COUNTER = 'preManipulationAreaEastCounter1'
@@ -27,7 +29,9 @@ class ImaginationBadInputTest(unittest.TestCase):
     def setUpClass(cls):
         cls.system = ImaginationSystem(workers=1)
         cls.addClassCleanup(cls.system.destroy)
-        cls.system.start()
+        cls.system.start_client(arguments=['_localisation:=where'])
+        cls.system.start_host(1)
+        cls.system.wait_until_joined(1)
         os.environ.update(ROS_MASTER_URI=cls.system.main.uri, ROS_IP='127.0.0.1',
                           ROS_LOG_DIR=cls.system.processes.folder.name)
         os.environ.pop('ROS_HOSTNAME', None)
@@ -127,6 +131,34 @@ class ImaginationBadInputTest(unittest.TestCase):
     def test_an_unknown_motion_set(self):
         self.require_invalid(self.goal('move_base_param', [[SOUTH_TABLE], ['fsat']]),
                              'fsat', "'fast'")
+
+    def test_bytes_that_are_no_goal_do_no_harm(self):
+        whole = io.BytesIO()
+        self.msg.ImagineActionGoal(goal=self.goal()).serialize(whole)
+        whole = whole.getvalue()
+        # rospy sends the like after a message that it could not write.
+        for length in (0, 0, 1, 4, 20, 60, len(whole) - 1, 0):
+            frame = struct.pack('<I', length) + whole[:length]
+            self.client.pub_goal.impl.connections[0].socket.sendall(frame)
+            self.rospy.sleep(0.02)
+        self.require_the_answer_of_the_beginning()
+
+    def test_a_localisation_that_says_nothing_of_use_is_told(self):
+        from geometry_msgs.msg import PoseWithCovarianceStamped
+        self.assertIn('topic=/where awaited why=nothing came yet', self.system.client.output())
+        publisher = self.rospy.Publisher('where', PoseWithCovarianceStamped, queue_size=10)
+        wait_until(publisher.get_num_connections, 'the client')
+        for field, value, text in (('position.y', NAN, 'dropped why=pose.pose.position is not finite'),
+                                   ('orientation.w', 0.0, 'dropped why=pose.pose.orientation has length 0'),
+                                   ('position.x', 100.0, "taken for a pose in the map why=header.frame_id is 'odom'")):
+            pose = PoseWithCovarianceStamped()
+            pose.header.frame_id = 'odom'
+            pose.pose.pose.orientation.w = 1.0
+            part, member = field.split('.')
+            setattr(getattr(pose.pose.pose, part), member, value)
+            publisher.publish(pose)
+            self.system.client.wait_for('topic=/?where ' + text)
+            self.rospy.sleep(1.1)  # a topic is warned of once a second
 
     # The state.
 

@@ -3,6 +3,7 @@
 and at any moment. Run alone, or by `rostest hires imagination_launch.test`."""
 
 import os
+import shutil
 import signal
 import sys
 import time
@@ -12,9 +13,10 @@ from concurrent.futures import ThreadPoolExecutor
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), 'support'))
 
 from imagination_system import ImaginationSystem  # noqa: E402
-from ros_processes import wait_until  # noqa: E402
+from ros_processes import executable, free_port_block, wait_until  # noqa: E402
 from test_run import run_test  # noqa: E402
 
+EXAMPLE = os.path.join(os.path.dirname(os.path.abspath(__file__)), '..', '..', 'examples', 'own_robot')
 CYCLES = 20
 SIDE_BY_SIDE = 2  # under a master each
 
@@ -66,6 +68,32 @@ class ImaginationLaunchTest(LaunchCase):
         launch.signal(signal.SIGINT)
         self.assertEqual(launch.wait(), 0)
         wait_until(lambda: not imagination.system.alive(), 'all processes to end', 2.0)
+
+
+    def test_two_of_one_master_have_workers_of_their_own_also_of_files_with_blanks_in_their_names(self):
+        (imagination,) = self.launches(1)
+        system = imagination.system
+        world = os.path.join(system.processes.folder.name, 'my lab', 'hall.world')
+        os.mkdir(os.path.dirname(world))
+        shutil.copy(os.path.join(EXAMPLE, 'hall.world'), world)
+
+        def launch(name, base_port, *files):
+            return system.run(['roslaunch', 'hires', 'imagination.launch', 'workers:=1',
+                               'base_port:=%d' % base_port, *files], ROS_NAMESPACE=name)
+        both = [launch('restaurant', system.base_port),
+                launch('hall', free_port_block(2) - 1, 'world:=' + world,
+                       'robot:=' + os.path.join(EXAMPLE, 'courier.yaml'),
+                       'objects:=' + os.path.join(EXAMPLE, 'objects.yaml'))]
+        for each in both:
+            each.wait_for('worker=1 joined')
+        asked = system.run([executable('hires'), 'imagine', '--action', 'move_base_param', '--from', 'kitchenDoor',
+                            '--arg', 'atRoundTable', '--arg', 'slow', '--rollouts', '8'], ROS_NAMESPACE='hall')
+        self.assertEqual(asked.wait(), 0, asked.output())
+        for each in both:
+            self.assertEqual(each.output().count('worker=1 joined'), 1, each.output())
+            self.assertNotIn('withdrawn', each.output())
+            each.signal(signal.SIGINT)
+            each.wait()
 
 
 class ImaginationLaunchCyclesTest(LaunchCase):

@@ -81,6 +81,40 @@ TEST(ImagineRequestTest, AGoalWithStatesStartsInThem) {
   EXPECT_EQ(Request(goal).setup.world_state.objects.size(), 1u);
 }
 
+TEST(ImagineRequestTest, WhatAStateSaysInVainIsRefused) {
+  hires::ImagineGoal goal = Goal();
+  const auto start =
+      imagination::MakeStartState(Restaurant(), "preManipulationAreaEastCounter1", {"peppermill1"});
+  goal.updated_fluents.clear();
+  goal.world_state = ToMsg(start.world);
+  goal.robot_state = ToMsg(start.robot);
+  goal.robot_state.joints = {};
+  EXPECT_THAT(ErrorOf(goal), HasSubstr("no ConfigError"));
+  goal.robot_state.postures.resize(1);
+  goal.robot_state.postures[0].name = "torso1";
+  goal.robot_state.postures[0].value = "TorsoUpPosture";
+  EXPECT_THAT(ErrorOf(goal), HasSubstr("robot_state.joints is empty"));
+  goal.robot_state.postures.clear();
+  goal.world_state.objects[0].name.clear();
+  EXPECT_THAT(ErrorOf(goal), HasSubstr("world_state.objects[0].name is empty"));
+}
+
+TEST(ImagineRequestTest, AGoalWithoutAStartIsToldHowToGiveOne) {
+  hires::WorldState world;
+  const auto error = [&] {
+    return ConfigErrorOf([&] { RequireSoundState(world, hires::RobotState()); });
+  };
+  EXPECT_THAT(error(), HasSubstr("RobotAt(area)"));
+  world.objects.resize(1);
+  EXPECT_THAT(error(), HasSubstr("header.frame_id is ''"));
+  world.header.frame_id = "odom";
+  EXPECT_THAT(error(), HasSubstr("header.frame_id is 'odom'"));
+  for (const char* map : {"map", "/map"}) {
+    world.header.frame_id = map;
+    EXPECT_THAT(error(), HasSubstr("no ConfigError"));
+  }
+}
+
 /// Put the mug down, which the right hand holds.
 hires::ImagineGoal PlaceGoal() {
   hires::ImagineGoal goal = Goal();

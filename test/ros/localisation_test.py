@@ -383,6 +383,25 @@ class LocalisationTest(HearsEchoes, unittest.TestCase):
         stamp = (scan.header.stamp + self.rospy.Duration.from_sec(TOLERANCE)).to_nsec()
         wait_until(lambda: stamp in node.transforms, 'the scan to be used')
 
+    def test_scans_that_come_just_before_their_odometry_are_not_said_to_wait(self):
+        from diagnostic_msgs.msg import DiagnosticArray
+        from tf2_msgs.msg import TFMessage
+        node = self.begun()
+        said = []
+
+        def hear(message):
+            said.extend(status.message for status in message.status
+                        if status.name.startswith(node.name[1:]) and status.values)
+        listener = self.rospy.Subscriber('/diagnostics', DiagnosticArray, hear)
+        self.addCleanup(listener.unregister)
+        for _ in range(40):
+            LocalisationTest.now = round(self.now + PERIOD, 3)
+            self.clock.publish(self.rospy.Time.from_sec(self.now))
+            self.scans.publish(self.scan())
+            self.rospy.sleep(0.1)
+            self.moving.publish(TFMessage([self.odometry()]))
+        self.assertEqual(set(said), {'good'})
+
     def test_silence_of_the_laser_is_told(self):
         node = self.begun()
         LocalisationTest.now += 10.0

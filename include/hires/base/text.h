@@ -9,6 +9,9 @@ namespace hires::base {
 
 std::string ToLower(std::string_view text);
 std::vector<std::string> Split(std::string_view text, char separator);  ///< "" gives {""}
+/// At white space; what stands between two double quotes holds together: `_world:="my lab/a.world"`
+/// is one word, without the quotes. A quote without a second one is a letter.
+std::vector<std::string> SplitWords(std::string_view text);
 std::string Join(const std::vector<std::string>& parts, std::string_view separator);
 
 /// The `known` names most like `name` by edit distance (case ignored), best first, each once; of

@@ -9,7 +9,8 @@
 namespace hires::relay {
 
 struct WorkerHostParams {
-  int index{1};                      ///< k: the worker is /worker_k on port base_port + k
+  int index{1};                      ///< k: the worker is worker_k on port base_port + k
+  std::string parent;                ///< its namespace: empty, or "/robot1"
   int base_port{11411};              ///< 1024 .. 65000
   std::string address{"127.0.0.1"};  ///< on which master and worker listen; dotted numbers
   int nice{10};                      ///< of all three children, 0 .. 19
@@ -28,7 +29,7 @@ struct WorkerHostParams {
   RestartLimits restart;
 
   int port() const { return base_port + index; }
-  std::string name_space() const { return "/worker_" + std::to_string(index); }
+  std::string name_space() const { return parent + "/worker_" + std::to_string(index); }
   std::string master_uri() const {
     return "http://" + address + ":" + std::to_string(port()) + "/";
   }

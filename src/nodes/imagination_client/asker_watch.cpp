@@ -1,5 +1,6 @@
 #include "nodes/imagination_client/asker_watch.h"
 
+#include <hires/ImagineActionGoal.h>
 #include <hires/ImagineActionResult.h>
 #include <ros/single_subscriber_publisher.h>
 
@@ -7,6 +8,42 @@
 #include <iterator>
 
 #include "hires/base/process.h"
+
+namespace hires_ros {
+
+/// What is read here of an ImagineActionGoal. A type of its own, because roscpp shares one reader
+/// among subscribers of a type, and where bytes are no message, the second one that reads them
+/// reads freed memory. The action server subscribes, too.
+struct AskedGoal {
+  std::string id;
+};
+
+}  // namespace hires_ros
+
+namespace ros::message_traits {
+
+template <>
+struct MD5Sum<hires_ros::AskedGoal> : MD5Sum<hires::ImagineActionGoal> {};
+template <>
+struct DataType<hires_ros::AskedGoal> : DataType<hires::ImagineActionGoal> {};
+
+}  // namespace ros::message_traits
+
+namespace ros::serialization {
+
+template <>
+struct Serializer<hires_ros::AskedGoal> {
+  template <typename Stream>
+  static void read(Stream& stream, hires_ros::AskedGoal& goal) {  // NOLINT: roscpp's form
+    std_msgs::Header header;
+    actionlib_msgs::GoalID id;
+    stream.next(header);
+    stream.next(id);
+    goal.id = id.id;
+  }
+};
+
+}  // namespace ros::serialization
 
 namespace hires_ros {
 namespace {
@@ -39,8 +76,8 @@ void AskerWatch::OnLeft(const std::string& node) {
   left_[node] = now;
 }
 
-void AskerWatch::OnGoal(const ros::MessageEvent<const hires::ImagineActionGoal>& event) {
-  asker_of_[event.getMessage()->goal_id.id] = {event.getPublisherName(), hires::base::SteadyNow()};
+void AskerWatch::OnGoal(const ros::MessageEvent<const AskedGoal>& event) {
+  asker_of_[event.getMessage()->id] = {event.getPublisherName(), hires::base::SteadyNow()};
 }
 
 std::string AskerWatch::GoneFor(const std::string& goal_id, double now) const {

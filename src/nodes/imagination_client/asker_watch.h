@@ -1,12 +1,14 @@
 #pragma once
 
-#include <hires/ImagineActionGoal.h>
+#include <ros/message_event.h>
 #include <ros/node_handle.h>
 
 #include <map>
 #include <string>
 
 namespace hires_ros {
+
+struct AskedGoal;
 
 /// Who asked, and whether somebody is still there to hear the answer: a node that asked and no
 /// longer listens to the action's result has died, or it gave up and left before its cancel was
@@ -29,7 +31,7 @@ class AskerWatch {
     double asked{0.0};  // [s] steady
   };
   void OnLeft(const std::string& node);
-  void OnGoal(const ros::MessageEvent<const hires::ImagineActionGoal>& event);
+  void OnGoal(const ros::MessageEvent<const AskedGoal>& event);
 
   std::map<std::string, Asker> asker_of_;  // by goal id
   std::map<std::string, int> num_links_;   // node -> that listen to results

@@ -4,6 +4,7 @@
 #include <ros/package.h>
 #include <visualization_msgs/MarkerArray.h>
 
+#include <cmath>
 #include <cstdlib>
 #include <deque>
 
@@ -21,6 +22,7 @@
 #include "hires/ros/robot/robot_state_messages.h"
 #include "hires/ros/values/action_messages.h"
 #include "hires/ros/values/geometry_messages.h"
+#include "hires/ros/values/pose_messages.h"
 #include "hires/ros/world/world_messages.h"
 
 namespace hires_ros {
@@ -158,6 +160,10 @@ std::unique_ptr<ImaginationClientNode::Session> ImaginationClientNode::MakeSessi
   if (wanted.updated_fluents.empty()) RequireSoundState(wanted.world_state, wanted.robot_state);
   ImagineRequest request = RequestOf(wanted, setup_, params_.config.scheduler);
   if (wanted.uncertainty.empty()) SpreadStart(&request);
+  if (localisation_ && !believed_) {
+    topic_warnings_.Tell(localisation_.getTopic(), "awaited",
+                         "nothing came yet, so starts are as spread as the uncertainty says");
+  }
   session->started = SchedulerNow();
   session->scheduler = std::make_unique<imagination::Scheduler>(
       request.params, static_cast<int>(request.actions.size()), session->started);
@@ -167,6 +173,21 @@ std::unique_ptr<ImaginationClientNode::Session> ImaginationClientNode::MakeSessi
 }
 
 void ImaginationClientNode::OnLocalisation(const geometry_msgs::PoseWithCovarianceStamped& msg) {
+  const geometry_msgs::Point& position = msg.pose.pose.position;
+  try {
+    if (!std::isfinite(position.x) || !std::isfinite(position.y))
+      throw hires::base::ConfigError("pose.pose.position is not finite, wanted numbers [m]");
+    RequireRotation(msg.pose.pose.orientation, "pose.pose.orientation");
+  } catch (const hires::base::ConfigError& error) {
+    topic_warnings_.Tell(params_.localisation, "dropped", error.what());
+    return;
+  }
+  const std::string& frame = msg.header.frame_id;
+  if (frame != "map" && frame != "/map" && frame != believed_frame_) {  // each said once
+    topic_warnings_.Tell(params_.localisation, "taken for a pose in the map",
+                         fmt::format("header.frame_id is '{}'", frame));
+  }
+  believed_frame_ = frame;
   const auto& c = msg.pose.covariance;  // row by row: x, y, z, and about x, y, z
   imagination::BelievedPose believed;
   believed.X_MB = params_.map_to_world.ToWorld(hires::geometry::Flatten(FromMsg(msg.pose.pose)));
@@ -420,6 +441,10 @@ void ImaginationClientNode::Diagnose(diagnostic_updater::DiagnosticStatusWrapper
     status.add(worker->name(), worker->is_alive() ? "alive" : "lost");
   }
   status.add("requests", sessions_.size());
+  if (localisation_) {
+    status.add(localisation_.getTopic(),
+               believed_ ? "tells where the robot is" : "nothing came yet");
+  }
 }
 
 }  // namespace hires_ros

@@ -15,6 +15,7 @@
 #include <utility>
 #include <vector>
 
+#include "hires/base/topic_warnings.h"
 #include "hires/geometry/map_to_world.h"
 #include "hires/imagination/client_config.h"
 #include "hires/imagination/imagination_setup.h"
@@ -101,6 +102,8 @@ class ImaginationClientNode {
   hires::imagination::KeptRollouts kept_;
   int next_session_{1};
   std::optional<hires::imagination::BelievedPose> believed_;
+  std::string believed_frame_;  // of its message
+  hires::base::TopicWarnings topic_warnings_;
   Server server_;
   AskerWatch askers_;
   RolloutReplayer replayer_;

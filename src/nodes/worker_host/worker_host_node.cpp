@@ -69,6 +69,8 @@ WorkerHostParams LoadWorkerHostParams() {
   const std::string path = ConfigPath("worker_host");
   WorkerHostParams params =
       hires::relay::ReadWorkerHostParams(ParamReader::FromFile(path), FolderOf(path));
+  const std::string here = ros::names::clean(ros::this_node::getNamespace());
+  if (here != "/") params.parent = here;
   Override("index", PrivateInt("index"), hires::base::Between(1, 256), &params.index);
   Override("base_port", PrivateInt("base_port"), hires::base::Between(1024, 65000),
            &params.base_port);

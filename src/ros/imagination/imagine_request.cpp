@@ -30,12 +30,29 @@ void RequireSameWorld(const hires::ImagineGoal& goal, const imagination::Imagina
       hires::base::HexOf(stated), hires::base::HexOf(setup.world_hash)));
 }
 
+/// What a state says that nothing here would hear.
+void RequireHeard(const hires::ImagineGoal& goal, const imagination::ImaginationSetup& setup) {
+  const msg::RobotState& robot = goal.robot_state;
+  if (!robot.postures.empty() && robot.joints.name.empty() &&
+      setup.scene->robot.profile.upper_body) {
+    throw hires::base::ConfigError(
+        "robot_state.postures are names for what joints say, and robot_state.joints is empty; give "
+        "joints, or HasArmPosture(arm, posture) and HasTorsoPosture(posture) in updated_fluents");
+  }
+  for (std::size_t i = 0; i < goal.world_state.objects.size(); ++i) {
+    if (!goal.world_state.objects[i].name.empty()) continue;
+    throw hires::base::ConfigError(
+        fmt::format("world_state.objects[{}].name is empty; name the instance, e.g. mug1", i));
+  }
+}
+
 imagination::StartState StartOf(const hires::ImagineGoal& goal,
                                 const imagination::ImaginationSetup& setup) {
   if (!goal.updated_fluents.empty()) {
     return imagination::MakeStartState(setup, FromMsg(goal.updated_fluents));
   }
   RequireSameWorld(goal, setup);
+  RequireHeard(goal, setup);
   return {FromMsg(goal.world_state), FromMsg(goal.robot_state)};
 }
 

@@ -27,11 +27,6 @@ std::optional<XmlRpcValue> PrivateValue(const std::string& key) {
   throw ConfigError(fmt::format("~{} is {}, wanted {}", key, text.str(), wanted));
 }
 
-std::vector<std::string> SplitAtSpace(const std::string& text) {
-  std::istringstream in(text);
-  return {std::istream_iterator<std::string>(in), {}};
-}
-
 }  // namespace
 
 std::optional<std::string> PrivateText(const std::string& key) {
@@ -67,7 +62,7 @@ std::optional<std::vector<std::string>> PrivateWords(const std::string& key) {
   auto value = PrivateValue(key);
   if (!value) return std::nullopt;
   if (value->getType() == XmlRpcValue::TypeString) {
-    return SplitAtSpace(static_cast<std::string>(*value));
+    return hires::base::SplitWords(static_cast<std::string>(*value));
   }
   if (value->getType() != XmlRpcValue::TypeArray) Fail(key, *value, "a list of text, or text");
   std::vector<std::string> words;

@@ -1,5 +1,6 @@
 #include "hires/ros/node/run_node.h"
 
+#include <ros/exceptions.h>
 #include <ros/init.h>
 
 #include <cstdlib>
@@ -29,6 +30,9 @@ int RunNode(const std::string& name, int argc, char** argv,
     play(&nh);
   } catch (const hires::base::ConfigError& error) {
     return EndMisconfigured(name, error);
+  } catch (
+      const ros::InvalidNameException& error) {  // of a topic or server, by a file or parameter
+    return EndMisconfigured(name, hires::base::ConfigError(error.what()));
   }
   return master_watch.Finish(EXIT_SUCCESS);
 }

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "hires/base/process.h"
 #include "hires/localisation/laser_mount.h"
 
 namespace hires_ros {
@@ -111,6 +112,7 @@ void PlacedScans::Try(bool are_all_tried) {
     const sensor_msgs::LaserScanConstPtr scan = waiting_.front();
     waiting_.pop_front();
     waits_for_.clear();
+    handed_over_ = hires::base::SteadyNow();
     HandOver(*scan, mount);
   }
 }
@@ -142,6 +144,12 @@ void PlacedScans::DropUseless() {
     on_drop_(why);
   }
   if (waiting_.empty()) waits_for_.clear();
+}
+
+std::string PlacedScans::waits_for() const {
+  constexpr double kMoment = 1.0;  // [s]
+  const bool is_served = handed_over_ && hires::base::SteadyNow() - *handed_over_ < kMoment;
+  return is_served ? "" : waits_for_;
 }
 
 void PlacedScans::Forget() {

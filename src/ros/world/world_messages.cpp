@@ -53,7 +53,13 @@ hires::world::WorldState FromMsg(const msg::WorldState& state) {
 }
 
 void RequireSoundState(const msg::WorldState& world, const msg::RobotState& robot) {
-  if (world.header.frame_id != "map") {
+  if (world.header.frame_id.empty() && world.objects.empty() && robot.joints.name.empty()) {
+    throw hires::base::ConfigError(
+        "nothing says where it begins: name RobotAt(area) in updated_fluents (robot_at= in "
+        "Python), "
+        "or give world_state, with header.frame_id 'map', and robot_state");
+  }
+  if (world.header.frame_id != "map" && world.header.frame_id != "/map") {
     throw hires::base::ConfigError(
         fmt::format("world_state.header.frame_id is '{}', wanted 'map'; give poses in map, or name "
                     "updated_fluents instead of a state",

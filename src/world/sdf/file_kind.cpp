@@ -98,7 +98,7 @@ std::string WhyNoWorldByWords(const std::string& text, const std::string& path) 
 
 std::string WhyNoWorldByKeys(const std::string& text, const std::string& path) {
   if (HasKey(text, "image") || HasKey(text, "resolution"))
-    return Is(path, "a map (YAML)", "give it with --map");
+    return Is(path, "a map (YAML)", "give it with --map; nodes take worlds alone");
   if (HasKey(text, "urdf")) return Is(path, "a robot's profile (YAML)", "give it with --robot");
   if (HasKey(text, "shape")) return Is(path, "an object (YAML)", "give it with --object");
   return "";

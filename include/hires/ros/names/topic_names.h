@@ -2,7 +2,7 @@
 
 #include <string>
 
-/// Names of topics and actions; all relative but those that cross between masters.
+/// Names of topics and actions; all relative.
 namespace hires_ros {
 
 constexpr char kImagineAction[] = "imagine";
@@ -19,9 +19,11 @@ constexpr char kDrivePlan[] = "navigation/plan";                 ///< path of a 
 constexpr char kLocalCostmap[] = "navigation/local_costmap";     ///< round the robot, latched
 constexpr char kWorldMarkers[] = "world_markers";                ///< furniture, areas, latched
 
-/// What a worker owns under its master and what crosses to the main one: "/worker_3/rollout".
+/// What a worker owns under its master and what crosses to the main one: "worker_3/rollout".
+/// Worker, host and client are in one namespace, so that each client of a master has workers of its
+/// own.
 inline std::string WorkerName(int index, const std::string& what) {
-  return "/worker_" + std::to_string(index) + "/" + what;
+  return "worker_" + std::to_string(index) + "/" + what;
 }
 constexpr char kRollout[] = "rollout";
 constexpr char kWorkerMarkers[] = "markers";

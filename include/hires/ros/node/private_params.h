@@ -17,7 +17,7 @@ std::optional<std::string> PrivateText(const std::string& key);
 std::optional<int> PrivateInt(const std::string& key);
 std::optional<double> PrivateNumber(const std::string& key);  ///< whole numbers too
 std::optional<bool> PrivateBool(const std::string& key);
-/// A list of text, or one text split at white space.
+/// A list of text, or one text split into words as SplitWords does.
 std::optional<std::vector<std::string>> PrivateWords(const std::string& key);
 
 /// ~action_libraries: paths of shared libraries with more actions, see skills::LoadActionSet,

@@ -4,6 +4,7 @@
 
 #include <deque>
 #include <functional>
+#include <optional>
 #include <string>
 
 #include "hires/control/robot_names.h"
@@ -56,8 +57,9 @@ class PlacedScans {
 
   void Forget();  ///< those that wait
 
-  /// What the first one waits for; empty: none waits.
-  const std::string& waits_for() const { return waits_for_; }
+  /// What the first one waits for; empty: none waits, or just for a moment, as scans do that are
+  /// faster than the transforms of their time.
+  std::string waits_for() const;
 
  private:
   /// Odometry and laser at the time of a scan.
@@ -80,6 +82,7 @@ class PlacedScans {
   std::string needed_;
   std::deque<sensor_msgs::LaserScanConstPtr> waiting_;
   std::string waits_for_;
+  std::optional<double> handed_over_;  // [s] steady, the last one
 };
 
 }  // namespace hires_ros

@@ -113,8 +113,12 @@ std::vector<std::string> LinksOf(const RobotProfile& profile) {
       links.insert(links.end(), {arm.palm_link, arm.tool_link});
     }
   }
-  links.erase(std::remove(links.begin(), links.end(), ""), links.end());
-  return links;
+  std::vector<std::string> once;  // a gripper may be palm and tool
+  for (const std::string& link : links) {
+    const bool is_new = std::find(once.begin(), once.end(), link) == once.end();
+    if (!link.empty() && is_new) once.push_back(link);
+  }
+  return once;
 }
 
 std::vector<JointChoice> JointsOf(const RobotProfile& profile) {
