@@ -490,6 +490,29 @@ TEST(CommandLineTest, RefusesEmptyAlternatives) {
   ExpectRefused(with({"--arg="}), {"--arg"});
 }
 
+TEST(CommandLineTest, AnEmptyValueIsNotTakenForTheDefault) {
+  for (const char* option :
+       {"--world", "--map", "--robot", "--objects", "--object", "--uncertainty", "--scene",
+        "--config", "--ranking", "--json", "--html"}) {
+    for (const char* empty : {"", " "}) {
+      ExpectRefused(Small().Imagine(kDrive + std::vector<std::string>{option, empty}),
+                    {option, "an empty text came"});
+    }
+  }
+  ExpectRefused(
+      RunHires({"imagine"}, kDrive + std::vector<std::string>{"--json", "", "--robot", ""}),
+      {"--robot", "--json"});
+  for (const std::vector<std::string>& words :
+       std::vector<std::vector<std::string>>{{"limits", "--object", "peppermill1", "--robot", ""},
+                                             {"doctor", "--world", ""},
+                                             {"list", "areas", "--world", ""},
+                                             {"new", "robot", ""},
+                                             {"new", "robot", "cart.urdf", "--output", ""},
+                                             {"blackboard", "stats", "--store", ""}}) {
+    ExpectRefused(RunHires(words), {"an empty text came"});
+  }
+}
+
 TEST(CommandLineTest, NamesMissingFiles) {
   for (const char* option : {"--world", "--robot", "--objects", "--uncertainty"}) {
     ExpectRefused(Small().Imagine(kDrive + std::vector<std::string>{option, "/nowhere/file.yaml"}),
