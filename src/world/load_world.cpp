@@ -429,8 +429,13 @@ World LoadWorldInParts(const std::string& sdf_path, const std::vector<std::strin
 ObjectModel LoadObjectModel(const std::string& path) {
   LoadNotes notes;
   ObjectModel object = LoadObjectOf(path, &notes);
+  const std::string place = fmt::format("{} '{}'", path, object.name);
+  const bool is_doubted = !object.notes.empty();  // a mesh by itself
+  const std::string large = is_doubted ? "" : DoubtOfSize(object);
+  if (!large.empty()) notes.Add("object", large, place);
+  for (const std::string& doubt : DoubtsOfMass(object)) notes.Add("object", doubt, place);
   const std::string moved = PutOriginAtUnderside(&object);
-  if (!moved.empty()) notes.Add("object", moved, fmt::format("{} '{}'", path, object.name));
+  if (!moved.empty()) notes.Add("object", moved, place);
   for (std::string& note : notes.Sentences()) object.notes.push_back(std::move(note));
   for (const std::string& note : object.notes)
     base::Log(base::LogLevel::kWarn, fmt::format("object={} note=\"{}\"", object.name, note));

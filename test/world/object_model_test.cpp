@@ -326,6 +326,57 @@ std::string CanWithMiddleAt(double z, bool is_urdf) {
       z);
 }
 
+/// A can as high as it is wide, all lengths and the mass times a factor.
+std::string CanTimes(double length, double mass, double com_height, bool is_urdf) {
+  const double moment = 0.12 * mass * length * length;
+  if (is_urdf) {
+    return fmt::format(
+        "<robot name='can'><link name='l'><inertial><origin xyz='0 0 {0}'/><mass value='{1}'/>"
+        "<inertia ixx='{2}' ixy='0' ixz='0' iyy='{2}' iyz='0' izz='{2}'/></inertial><collision>"
+        "<origin xyz='0 0 {3}'/><geometry><cylinder radius='{3}' length='{4}'/></geometry>"
+        "</collision></link></robot>",
+        com_height, mass, moment, 0.5 * length, length);
+  }
+  return fmt::format(
+      "<model name='can'><link name='l'><inertial><pose>0 0 {0} 0 0 "
+      "0</pose><mass>{1}</mass><inertia>"
+      "<ixx>{2}</ixx><iyy>{2}</iyy><izz>{2}</izz></inertia></inertial><collision name='c'>"
+      "<pose>0 0 {3} 0 0 0</pose><geometry><cylinder><radius>{3}</radius><length>{4}</length>"
+      "</cylinder></geometry></collision></link></model>",
+      com_height, mass, moment, 0.5 * length, length);
+}
+
+TEST_F(ObjectModelTest, WhatSuggestsOtherUnitsOrAMassElsewhereIsSaidAndStays) {
+  struct Case {
+    double length, mass, com_height;
+    std::string said;  // "": nothing
+  };
+  const std::vector<Case> cases{{0.1, 0.3, 0.05, ""},
+                                {0.1, 15.0, 0.05, ""},  // gold
+                                {0.1, 300.0, 0.05, "in grams it would be 0.3 kg"},
+                                {10.0, 0.3, 5.0, "in mm it would be 0.01 x 0.01 x 0.01 m"},
+                                {0.1, 0.3, 0.105, ""},
+                                {0.1, 0.3, 0.5, "lies 0.4 m outside"},
+                                {0.1, 0.3, -0.2, "lies 0.2 m outside"}};
+  for (const Case& each : cases) {
+    for (const bool is_urdf : {true, false}) {
+      const std::string text = CanTimes(each.length, each.mass, each.com_height, is_urdf);
+      const ObjectModel can = LoadObjectModel(
+          folder_.Write(is_urdf ? "can.urdf" : "can.sdf", is_urdf ? text : ModelFile(text)));
+      EXPECT_EQ(can.mass_properties.mass, each.mass);
+      if (each.said.empty()) {
+        EXPECT_THAT(can.notes, testing::IsEmpty()) << each.mass << " " << each.com_height;
+      } else {
+        EXPECT_THAT(can.notes, testing::Contains(AllOf(HasSubstr(each.said), HasSubstr("'can'"))));
+      }
+    }
+  }
+  const World world =
+      LoadWorld(folder_.Write("can.world", WorldText(CanTimes(0.1, 300.0, 0.05, false))));
+  EXPECT_THAT(world.notes,
+              ElementsAre(AllOf(HasSubstr("1 model whose 300 kg"), HasSubstr("'can'"))));
+}
+
 TEST_F(ObjectModelTest, AnObjectOfAFileStandsOnItsLowestPointWhereverItsOriginIs) {
   for (const bool is_urdf : {true, false}) {
     for (const double middle : {-0.3, -0.06, 0.0, 0.0595, 0.06, 0.0600001, 0.11, 5.0}) {
