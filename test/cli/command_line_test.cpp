@@ -488,6 +488,16 @@ TEST(CommandLineTest, RefusesEmptyAlternatives) {
   ExpectRefused(with({"--arg", "Window,"}), {"empty"});
   ExpectRefused(with({"--arg", ""}), {"empty"});
   ExpectRefused(with({"--arg="}), {"--arg"});
+  ExpectRefused(with({"--arg", "Window, ,Door"}), {"empty"});
+}
+
+TEST(CommandLineTest, BlanksRoundAlternativesAreNoneOfTheirNames) {
+  for (const char* alternatives : {"Window, Inside", " Window ,Inside ", "Window\t,\tInside"}) {
+    const Ended ended = Small().Imagine(
+        {"--action", "move_base", "--from", "Door", "--arg", alternatives, "--rollouts", "1"});
+    EXPECT_THAT(ended.out, AllOf(HasSubstr("move_base(window)"), HasSubstr("move_base(inside)")))
+        << alternatives << ended.err;
+  }
 }
 
 TEST(CommandLineTest, AnEmptyValueIsNotTakenForTheDefault) {

@@ -78,6 +78,16 @@ TEST(ImagineStartTest, RefusesWhatItCannotRead) {
   StartOptions options = AtDoor();
   options.put = {"book1:1,2,-0.1"};
   EXPECT_THAT(why_not(options), AllOf(HasSubstr("'book1:1,2,-0.1'"), HasSubstr("below the floor")));
+  for (const char* put : {"book1:1,2,0,90", "book1:table:0.1,0.2,-45", "book1:1,2,0,6.3"}) {
+    options.put = {put};
+    EXPECT_THAT(why_not(options), AllOf(HasSubstr(put), HasSubstr("yaw is in radians"))) << put;
+  }
+  for (const std::vector<std::string>& objects : std::vector<std::vector<std::string>>{
+           {"mug1", "mug1"}, {"mug1", "book1", "Mug1"}, {"a.sdf", "a.sdf"}}) {
+    options = AtDoor();
+    options.on_tray = objects;
+    EXPECT_THAT(why_not(options), AllOf(HasSubstr(objects.back()), HasSubstr("came twice")));
+  }
   options = AtDoor();
   options.in_hand = {"mug1"};
   EXPECT_THAT(why_not(options),

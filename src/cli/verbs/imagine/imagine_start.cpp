@@ -40,6 +40,26 @@ std::vector<double> NumbersIn(const std::string& text) {
   return numbers;
 }
 
+void RefuseDegrees(const std::string& option, const std::string& text, double yaw) {
+  if (std::abs(yaw) <= 2.0 * M_PI) return;
+  throw base::ConfigError(fmt::format(
+      "{} '{}': yaw is in radians, wanted between -2 pi and 2 pi; {:g} degrees are {:.5g}", option,
+      text, yaw, yaw * M_PI / 180.0));
+}
+
+/// A name that comes again would be one thing, where two were meant.
+void RefuseTwice(const std::vector<std::string>& on_tray) {
+  std::set<std::string> seen;
+  for (const std::string& object : on_tray) {
+    if (seen.insert(base::ToLower(object)).second) continue;
+    throw base::ConfigError(
+        fmt::format("--object '{0}': came twice, wanted a name for each thing; one more of its "
+                    "kind has another "
+                    "number, as mug1 and mug2; of a file, copy it under another name",
+                    object));
+  }
+}
+
 constexpr char kPutWanted[] =
     "OBJECT:AREA, OBJECT:AREA:X,Y[,YAW] in the area's frame, or OBJECT:X,Y,Z[,YAW] in the map "
     "[m, rad]";
@@ -70,6 +90,7 @@ void ReadPut(const std::string& text, ImagineStart* start) {
   put.object = parts[0];
   if (!is_in_map) put.area = parts[1];
   const double yaw = numbers.size() > least ? numbers.back() : 0.0;
+  RefuseDegrees("--put", text, yaw);
   put.X_AO = geometry::Lift({numbers[0], numbers[1], yaw}, is_in_map ? numbers[2] : 0.0);
   start->put.push_back(put);
 }
@@ -114,12 +135,7 @@ imagination::NamedArea ReadArea(const std::string& text) {
   if (numbers.size() != 3) {
     throw base::ConfigError(fmt::format("--area '{}': wanted {}", text, kWanted));
   }
-  if (std::abs(numbers[2]) > 2.0 * M_PI) {
-    throw base::ConfigError(
-        fmt::format("--area '{}': yaw is in radians, wanted between -2 pi and 2 pi; {:g} degrees "
-                    "are {:.5g}",
-                    text, numbers[2], numbers[2] * M_PI / 180.0));
-  }
+  RefuseDegrees("--area", text, numbers[2]);
   return {parts[0], {numbers[0], numbers[1], numbers[2]}};
 }
 
@@ -211,6 +227,7 @@ ImagineStart ReadStart(const StartOptions& options, const std::string& action,
                        const actions::Catalogue& catalogue) {
   ImagineStart start;
   start.from = options.from;
+  RefuseTwice(options.on_tray);
   start.on_tray = options.on_tray;
   for (const std::string& posture : options.postures) ReadPosture(posture, &start);
   for (const std::string& held : options.in_hand) {
