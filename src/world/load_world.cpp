@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cctype>
 #include <filesystem>
 #include <locale>
 #include <optional>
@@ -393,7 +394,19 @@ ObjectModel LoadSdfObject(const std::string& path, const ResourceFinder& finder,
   return object;
 }
 
-ObjectModel LoadObjectOf(const std::string& path, LoadNotes* notes) {
+/// What it is called in requests and plans, which know letters, digits and _ alone: others become
+/// _.
+std::string PlainName(const std::string& name) {
+  std::string plain;
+  for (const unsigned char letter : name) {
+    const bool is_plain = std::isalnum(letter) != 0 || letter == '_';
+    if (is_plain || plain.empty() || plain.back() != '_')
+      plain += is_plain ? static_cast<char>(letter) : '_';
+  }
+  return plain;
+}
+
+ObjectModel ReadObject(const std::string& path, LoadNotes* notes) {
   const std::filesystem::path folder = std::filesystem::absolute(path).parent_path();
   // Models stand beside each other: model://other is found from models/this/model.sdf.
   const ResourceFinder finder(base::ModelFoldersFor(path, {folder.parent_path().string()}));
@@ -403,6 +416,17 @@ ObjectModel LoadObjectOf(const std::string& path, LoadNotes* notes) {
   if (ending == ".yaml") return LoadPlainObject(path);
   throw base::ConfigError(
       fmt::format("{}: an object file ends in .sdf, .urdf or .yaml; rename or convert it", path));
+}
+
+ObjectModel LoadObjectOf(const std::string& path, LoadNotes* notes) {
+  ObjectModel object = ReadObject(path, notes);
+  const std::string plain = PlainName(object.name);
+  if (plain == object.name) return object;
+  notes->Add("object",
+             fmt::format("whose name has more than letters, digits and _: it is {}", plain),
+             fmt::format("{} '{}'", path, object.name));
+  object.name = plain;
+  return object;
 }
 
 }  // namespace
@@ -424,6 +448,11 @@ World LoadWorldInParts(const std::string& sdf_path, const std::vector<std::strin
   ReadSdfWorld(files, sdf_path, models_per_part, &notes,
                [&](const SdfWorldPart& part) { builder.Add(part, sdf_path); });
   return builder.Finish(sdf_path, areas);
+}
+
+std::string ObjectNameIn(const std::string& path) {
+  LoadNotes unsaid;
+  return LoadObjectOf(path, &unsaid).name;
 }
 
 ObjectModel LoadObjectModel(const std::string& path) {

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <string>
 #include <tuple>
+#include <utility>
 #include <vector>
 
 #include "hires/base/error.h"
@@ -324,6 +325,45 @@ std::string CanWithMiddleAt(double z, bool is_urdf) {
       "</inertial><collision name='c'><geometry><cylinder><radius>0.03</radius><length>0.12"
       "</length></cylinder></geometry></collision></link></model>",
       z);
+}
+
+TEST_F(ObjectModelTest, NamesThatRequestsDoNotKnowBecomePlainOnesAndAreSaid) {
+  const std::vector<std::pair<std::string, std::string>> names{
+      {"can", "can"},           {"can_2", "can_2"}, {"a__b", "a__b"},      {"Coke Can", "Coke_Can"},
+      {"can.urdf", "can_urdf"}, {"can-2", "can_2"}, {"can (1)", "can_1_"}, {"T\u00fcte", "T_te"}};
+  for (const auto& [name, plain] : names) {
+    for (const bool is_urdf : {true, false}) {
+      std::string text = CanWithMiddleAt(0.06, is_urdf);
+      text.replace(text.find("name='can'"), 10, "name='" + name + "'");
+      const std::string path =
+          folder_.Write(is_urdf ? "can.urdf" : "can.sdf", is_urdf ? text : ModelFile(text));
+      const ObjectModel can = LoadObjectModel(path);
+      EXPECT_EQ(can.name, plain);
+      EXPECT_EQ(ObjectNameIn(path), plain);
+      if (name == plain) {
+        EXPECT_THAT(can.notes, testing::IsEmpty()) << name;
+      } else {
+        EXPECT_THAT(can.notes,
+                    ElementsAre(AllOf(HasSubstr("it is " + plain), HasSubstr("'" + name + "'"))));
+      }
+    }
+  }
+}
+
+TEST_F(ObjectModelTest, AFileOfSeveralModelsIsRefusedWithTheirNumber) {
+  for (int count = 2; count < 5; ++count) {
+    std::string models;
+    for (int i = 0; i < count; ++i) {
+      std::string text = CanWithMiddleAt(0.06, false);
+      models += text.replace(text.find("'can'"), 5, fmt::format("'can{}'", i));
+    }
+    try {
+      LoadObjectModel(folder_.Write("cans.sdf", ModelFile(models)));
+      ADD_FAILURE() << count;
+    } catch (const base::ConfigError& error) {
+      EXPECT_THAT(error.what(), HasSubstr(fmt::format("has {} <model> elements", count)));
+    }
+  }
 }
 
 /// A can as high as it is wide, all lengths and the mass times a factor.
