@@ -32,6 +32,8 @@ using geometry::Pose3;
 constexpr double kWidestRobot = 10.0;  // [m] a larger one is asked about its units
 
 MotionSet ReadMotionSet(ParamReader in) {
+  in.RequireKeys({"max_linear_velocity", "max_angular_velocity", "max_linear_acceleration",
+                  "max_angular_acceleration"});  // all that are missing at once
   MotionSet set;
   set.max_linear_velocity = in.Get("max_linear_velocity", Between(0.0, 100.0));
   set.max_angular_velocity = in.Get("max_angular_velocity", Between(0.0, 100.0));
@@ -129,7 +131,8 @@ BaseControllerParams ReadBaseController(BaseControllerParams params, ParamReader
 
 Pose3 ReadPose(ParamReader in) {
   const std::vector<double> xyz = in.GetNumbers("xyz", 3);
-  const std::vector<double> rpy = in.GetNumbers("rpy", 3);
+  const std::vector<double> rpy =
+      in.Has("rpy") ? in.GetNumbers("rpy", 3) : std::vector<double>{0.0, 0.0, 0.0};
   return {{xyz[0], xyz[1], xyz[2]}, geometry::RotationFromRpy(rpy[0], rpy[1], rpy[2])};
 }
 
