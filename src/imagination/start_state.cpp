@@ -37,15 +37,8 @@ void RefuseLoad(const ImaginationSetup& setup, const std::vector<std::string>& o
   }
   const robot::Robot& robot = setup.scene->robot;
   if (on_tray.empty() || !robot.profile.tray_link.empty()) return;
-  constexpr std::size_t kMostNamed = 4;
-  std::vector<std::string> open = robot::LinksOpenAbove(robot);
-  if (open.size() > kMostNamed) open.resize(kMostNamed);
   throw base::ConfigError(
-      fmt::format("robot '{}' has no tray to carry '{}', as no link is called one; name a "
-                  "tray_link in its profile, "
-                  "which `hires new robot` begins{}{}",
-                  robot.model.name, on_tray.front(),
-                  open.empty() ? "" : "; nothing is over the middle of ", base::Join(open, ", ")));
+      fmt::format("'{}' cannot be carried: {}", on_tray.front(), robot::NoTrayText(robot)));
 }
 
 void RefuseOtherStorey(const ImaginationSetup& setup, const std::string& area) {

@@ -1,7 +1,11 @@
 #include "hires/robot/link_bounds.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <utility>
+
+#include "hires/base/text.h"
 
 namespace hires::robot {
 
@@ -54,6 +58,17 @@ std::vector<std::string> LinksOpenAbove(const Robot& robot) {
   std::vector<std::string> names;
   for (auto& [area, name] : open) names.push_back(std::move(name));
   return names;
+}
+
+std::string NoTrayText(const Robot& robot) {
+  constexpr std::size_t kMostNamed = 4;
+  std::vector<std::string> open = LinksOpenAbove(robot);
+  if (open.size() > kMostNamed) open.resize(kMostNamed);
+  return fmt::format(
+      "robot '{}' has no tray; name a tray_link in its profile, which "
+      "`hires new robot` begins{}{}",
+      robot.model.name, open.empty() ? "" : "; nothing is over the middle of ",
+      base::Join(open, ", "));
 }
 
 }  // namespace hires::robot

@@ -24,4 +24,8 @@ std::string WidestLink(const Robot& robot, const std::vector<geometry::Aabb>& bo
 /// @pre as LinkBounds
 std::vector<std::string> LinksOpenAbove(const Robot& robot);
 
+/// "robot 'husky' has no tray; ...": with what to write, and on which links things could stand.
+/// @pre as LinkBounds, and the robot's tray_link is empty
+std::string NoTrayText(const Robot& robot);
+
 }  // namespace hires::robot
