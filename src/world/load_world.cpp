@@ -168,6 +168,13 @@ class WorldBuilder {
                       path, in.Name(), gravity.X(), gravity.Y(), gravity.Z()));
     }
     world_.gravity = std::abs(gravity.Z());
+    constexpr double kEarths = 9.81, kOff = 0.1;  // [m/s^2] what worlds of the Earth differ by
+    if (std::abs(world_.gravity - kEarths) <= kOff) return;
+    notes_->Add("world",
+                fmt::format("whose <gravity> is {:g} m/s^2: all falls and tips by that, as nothing "
+                            "does on Earth",
+                            world_.gravity),
+                fmt::format("{} '{}'", path, in.Name()));
   }
 
   WorldModel WorldModelOf(const sdf::Model& model) {
