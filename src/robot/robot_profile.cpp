@@ -540,18 +540,27 @@ std::uint64_t Robot::hash() const {
   return hash.value();
 }
 
+/// Of a profile, which is named where it is not there.
+UrdfFile UrdfIn(const ParamReader& in, const std::string& profile_path,
+                const RobotProfile& profile) {
+  UrdfFile urdf;
+  try {
+    urdf = UrdfOf(profile_path, profile);
+  } catch (const base::ConfigError& error) {
+    in.Fail("urdf", error.what());
+  }
+  if (std::filesystem::exists(urdf.path)) return urdf;
+  in.Fail("urdf", fmt::format("wanted a file that is there, but {} is not; write its path as seen "
+                              "from the profile's folder",
+                              urdf.path));
+}
+
 Robot LoadRobot(const std::string& profile_path) {
   ParamReader in = ParamReader::FromFile(profile_path);
   RequireSomeProfile(in, profile_path);
   Robot robot;
   robot.profile = ReadProfile(&in);
-  const UrdfFile urdf = UrdfOf(profile_path, robot.profile);
-  if (!std::filesystem::exists(urdf.path)) {
-    in.Fail("urdf",
-            fmt::format("wanted a file that is there, but {} is not; write its path as seen "
-                        "from the profile's folder",
-                        urdf.path));
-  }
+  const UrdfFile urdf = UrdfIn(in, profile_path, robot.profile);
   const std::string xml = ReadUrdfFile(urdf);
   UrdfReading reading = ReadUrdf(xml, urdf.path);
   robot.model = std::move(reading.model);
