@@ -32,7 +32,6 @@ int ListTasks(const AchieveOptions& achieve, const Backends& backends) {
 }
 
 int Achieve(const AchieveOptions& achieve, const Backends& backends) {
-  RefuseEmptyValues(*achieve.verb);
   if (achieve.is_list) return ListTasks(achieve, backends);
   return RunAchieveVerb(achieve, backends.package_folder, backends.achieve_remotely, IsInterrupted,
                         backends.record_loop);
@@ -48,7 +47,6 @@ std::vector<ProgramVerb> VerbsOf(CLI::App* app, const std::vector<std::string>& 
       AddAchieveVerb, ReportOf<AchieveOptions>,
       [&](const AchieveOptions& options) { return Achieve(options, backends); });
   table.Add<PlanOptions>(AddPlanVerb, ReportOf<PlanOptions>, [](const PlanOptions& options) {
-    RefuseEmptyValues(*options.verb);
     return RunPlanVerb(options, IsInterrupted);
   });
   table.Add<BlackboardOptions>(AddBlackboardVerb, nullptr, [&](const BlackboardOptions& options) {

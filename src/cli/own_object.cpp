@@ -1,6 +1,6 @@
 #include "cli/own_object.h"
 
-#include "hires/world/object_catalogue.h"
+#include "hires/world/world.h"
 
 namespace hires::cli {
 
@@ -9,7 +9,7 @@ std::string NameOf(const std::string& object, imagination::SetupConfig* setup) {
       object.find('/') != std::string::npos || object.find('.') != std::string::npos;
   if (!is_file) return object;
   setup->extra_objects.push_back(object);
-  return world::LoadObjectModel(object).name;
+  return world::ObjectNameIn(object);
 }
 
 }  // namespace hires::cli

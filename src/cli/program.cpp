@@ -137,6 +137,26 @@ void RefuseMovedVerb(const Program& program, const std::vector<std::string>& arg
       fmt::format("'{} {}' is '{}' now", program.name, moved->first, moved->second));
 }
 
+/// An option or word that was given is not empty: as a rule a variable of the shell is not set, and
+/// what holds without the option would be done instead.
+void RefuseEmptyValues(const CLI::App& app) {
+  std::vector<std::string> empty;
+  for (const CLI::Option* option : app.get_options()) {
+    const std::vector<std::string>& values = option->results();
+    const bool is_empty = std::any_of(values.begin(), values.end(), [](const std::string& value) {
+      return value.find_first_not_of(" \t\n\r") == std::string::npos;
+    });
+    if (is_empty) empty.push_back(option->get_name());
+  }
+  if (!empty.empty()) {
+    throw base::ConfigError(fmt::format(
+        "{}: an empty text came, wanted a value; is a variable of the shell not set? Give one, or "
+        "leave it out",
+        base::Join(empty, ", ")));
+  }
+  for (const CLI::App* verb : app.get_subcommands()) RefuseEmptyValues(*verb);
+}
+
 int RunVerb(const std::vector<ProgramVerb>& verbs) {
   for (const ProgramVerb& each : verbs) {
     if (!*each.verb) continue;
@@ -163,22 +183,6 @@ bool IsInterrupted() {
   return interrupted;
 }
 
-void RefuseEmptyValues(const CLI::App& verb) {
-  std::vector<std::string> empty;
-  for (const CLI::Option* option : verb.get_options()) {
-    const std::vector<std::string>& values = option->results();
-    const bool is_empty = std::any_of(values.begin(), values.end(), [](const std::string& value) {
-      return value.find_first_not_of(" \t\n\r") == std::string::npos;
-    });
-    if (is_empty) empty.push_back(option->get_name());
-  }
-  if (empty.empty()) return;
-  throw base::ConfigError(fmt::format(
-      "{}: an empty text came, wanted a value; is a variable of the shell not set? Give one, or "
-      "leave it out",
-      base::Join(empty, ", ")));
-}
-
 int RunProgram(const Program& program, const std::vector<std::string>& arguments) {
   HIRES_CHECK(!arguments.empty(), "the program's name is missing");
   CLI::App app(program.description, program.name);
@@ -192,6 +196,7 @@ int RunProgram(const Program& program, const std::vector<std::string>& arguments
     RefuseUnknownOption(app, arguments);
     // CLI11 takes its arguments from the back.
     app.parse(std::vector<std::string>(arguments.rbegin(), arguments.rend() - 1));
+    RefuseEmptyValues(app);
     const ReadingDisplay display(IsQuiet(app));
     return RunVerb(verbs);
   } catch (const CLI::ParseError& error) {

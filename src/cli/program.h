@@ -34,11 +34,6 @@ struct Program {
   std::map<std::string, std::string> moved{};
 };
 
-/// An option or word that was given is not empty: as a rule a variable of the shell is not set, and
-/// what holds without the option would be done instead.
-/// @throws base::ConfigError naming each that is.
-void RefuseEmptyValues(const CLI::App& verb);
-
 /// Whether a signal came that a verb heeds.
 bool IsInterrupted();
 

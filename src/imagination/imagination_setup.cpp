@@ -174,14 +174,6 @@ void KeepApart(const world::ObjectModel& other, world::World* world) {
 /// An object of one's own must not become what others are called.
 void RefuseTaken(const world::ObjectModel& model, const std::string& path,
                  const world::World& world, const std::map<std::string, std::string>& instances) {
-  const bool is_plain = !model.name.empty() &&
-                        std::all_of(model.name.begin(), model.name.end(),
-                                    [](unsigned char c) { return std::isalnum(c) || c == '_'; });
-  if (!is_plain) {
-    throw base::ConfigError(
-        fmt::format("{}: the object is called '{}', wanted letters, digits and _; rename it", path,
-                    model.name));
-  }
   const auto known = world.models.find(model.name);
   const bool is_other = known != world.models.end() && !IsThatKind(*known->second, model);
   const auto instance = instances.find(base::ToLower(model.name));

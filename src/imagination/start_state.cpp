@@ -5,6 +5,7 @@
 #include "hires/base/error.h"
 #include "hires/base/text.h"
 #include "hires/imagination/imagination_setup.h"
+#include "hires/robot/link_bounds.h"
 #include "hires/simulation/free_start.h"
 #include "hires/translation/areas.h"
 
@@ -34,11 +35,10 @@ void RefuseLoad(const ImaginationSetup& setup, const std::vector<std::string>& o
     throw base::ConfigError(fmt::format(
         "{} objects are wanted on the tray, it has 3 places; name at most 3", on_tray.size()));
   }
-  if (!on_tray.empty() && setup.scene->robot.profile.tray_link.empty()) {
-    throw base::ConfigError(
-        fmt::format("robot '{}' has no tray to carry '{}'; name a tray_link in its profile",
-                    setup.scene->robot.model.name, on_tray.front()));
-  }
+  const robot::Robot& robot = setup.scene->robot;
+  if (on_tray.empty() || !robot.profile.tray_link.empty()) return;
+  throw base::ConfigError(
+      fmt::format("'{}' cannot be carried: {}", on_tray.front(), robot::NoTrayText(robot)));
 }
 
 void RefuseOtherStorey(const ImaginationSetup& setup, const std::string& area) {

@@ -6,7 +6,9 @@
 #include <array>
 #include <cmath>
 #include <functional>
+#include <map>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "hires/base/error.h"
@@ -144,10 +146,24 @@ const Quantity& FindQuantity(const base::ParamReader& in, const std::string& nam
   in.Fail(name, base::UnknownName("quantity", name, QuantityNames()));
 }
 
+/// All that are missing at once.
+void RequireNumbersOf(const std::string& kind, const base::ParamReader& in) {
+  static const std::map<std::string, std::vector<std::string>> numbers{
+      {"fixed", {"value"}},
+      {"uniform", {"lower", "upper"}},
+      {"normal", {"mean", "sd"}},
+      {"lognormal", {"median", "log_sd"}},
+      {"laplace", {"mean", "distance"}}};
+  std::vector<std::string> needed = numbers.at(kind);
+  needed.insert(needed.end(), {"unit", "source"});
+  in.RequireKeys(needed);
+}
+
 Distribution ReadDistribution(base::ParamReader in, const Quantity& quantity) {
   const auto bound = base::Between(quantity.lower, quantity.upper);
   const std::string kind =
       in.Get("distribution", base::OneOf({"fixed", "uniform", "normal", "lognormal", "laplace"}));
+  RequireNumbersOf(kind, in);
   in.Get("unit", base::OneOf({quantity.unit}));
   in.GetString("source");
   if (kind == "fixed") return {Distribution::Kind::kFixed, in.Get("value", bound), 0.0};

@@ -191,7 +191,26 @@ std::string DriveText(const DriveGuess& guess) {
   return text + "; if that is wrong, write `base_controller: {drive: ..}` in a profile";
 }
 
-std::string TrayText(const Robot& robot, const IsGiven& is_given) {
+/// "; 'upper_tray' may be meant: `tray_link: upper_tray`": of links that are called trays, too, and
+/// not much smaller.
+std::string OtherTraysText(const Robot& robot, const Bounds& bounds) {
+  constexpr double kSmaller = 0.5;
+  const auto area = [&](std::size_t link) {
+    const Eigen::Vector3d size = bounds[link].upper - bounds[link].lower;
+    return robot.model.links[link].collisions.empty() ? 0.0 : size.x() * size.y();
+  };
+  const double least = kSmaller * area(*robot.model.FindLink(robot.profile.tray_link));
+  std::vector<std::string> others;
+  for (std::size_t i = 0; i < robot.model.links.size(); ++i) {
+    const std::string& name = robot.model.links[i].name;
+    const bool is_tray = base::ToLower(name).find("tray") != std::string::npos;
+    if (is_tray && name != robot.profile.tray_link && area(i) >= least) others.push_back(name);
+  }
+  if (others.empty()) return "";
+  return fmt::format("; {} may be meant as well: `tray_link: {}`", Few(others), others.front());
+}
+
+std::string TrayText(const Robot& robot, const Bounds& bounds, const IsGiven& is_given) {
   const RobotProfile& profile = robot.profile;
   const Eigen::Vector3d& p = profile.X_TO.translation;
   const TrayPlace place = PlaceOnTray(robot.model, profile.joints, profile.tray_link);
@@ -204,11 +223,12 @@ std::string TrayText(const Robot& robot, const IsGiven& is_given) {
                 place.taken_by)
           : fmt::format("the middle of its top, of which '{}' leaves no part free", place.taken_by);
   return fmt::format(
-      "{}: things stand on '{}' at ({:.3f}, {:.3f}, {:.3f}) m of its frame, {}; "
-      "`object_on_tray: {{xyz: [..], rpy: [0, 0, 0]}}` in a profile says another "
-      "place",
-      is_given("tray_link") ? "object_on_tray" : "tray_link", profile.tray_link, p.x(), p.y(),
-      p.z(), where);
+             "{}: things stand on '{}' at ({:.3f}, {:.3f}, {:.3f}) m of its frame, {}; "
+             "`object_on_tray: {{xyz: [..], rpy: [0, 0, 0]}}` in a profile says another "
+             "place",
+             is_given("tray_link") ? "object_on_tray" : "tray_link", profile.tray_link, p.x(),
+             p.y(), p.z(), where) +
+         (is_given("tray_link") ? "" : OtherTraysText(robot, bounds));
 }
 
 void AddMotion(const Robot& robot, const IsGiven& is_given, std::vector<std::string>* texts) {
@@ -307,7 +327,7 @@ std::vector<std::string> AssumptionsOf(const Robot& robot, const IsGiven& is_giv
     texts.push_back(LaserText(robot.model, urdf_xml));
   }
   if (!robot.profile.tray_link.empty() && !is_given("object_on_tray"))
-    texts.push_back(TrayText(robot, is_given));
+    texts.push_back(TrayText(robot, bounds, is_given));
   AddMotion(robot, is_given, &texts);
   return texts;
 }

@@ -32,6 +32,8 @@ using geometry::Pose3;
 constexpr double kWidestRobot = 10.0;  // [m] a larger one is asked about its units
 
 MotionSet ReadMotionSet(ParamReader in) {
+  in.RequireKeys({"max_linear_velocity", "max_angular_velocity", "max_linear_acceleration",
+                  "max_angular_acceleration"});  // all that are missing at once
   MotionSet set;
   set.max_linear_velocity = in.Get("max_linear_velocity", Between(0.0, 100.0));
   set.max_angular_velocity = in.Get("max_angular_velocity", Between(0.0, 100.0));
@@ -129,7 +131,8 @@ BaseControllerParams ReadBaseController(BaseControllerParams params, ParamReader
 
 Pose3 ReadPose(ParamReader in) {
   const std::vector<double> xyz = in.GetNumbers("xyz", 3);
-  const std::vector<double> rpy = in.GetNumbers("rpy", 3);
+  const std::vector<double> rpy =
+      in.Has("rpy") ? in.GetNumbers("rpy", 3) : std::vector<double>{0.0, 0.0, 0.0};
   return {{xyz[0], xyz[1], xyz[2]}, geometry::RotationFromRpy(rpy[0], rpy[1], rpy[2])};
 }
 
@@ -537,18 +540,27 @@ std::uint64_t Robot::hash() const {
   return hash.value();
 }
 
+/// Of a profile, which is named where it is not there.
+UrdfFile UrdfIn(const ParamReader& in, const std::string& profile_path,
+                const RobotProfile& profile) {
+  UrdfFile urdf;
+  try {
+    urdf = UrdfOf(profile_path, profile);
+  } catch (const base::ConfigError& error) {
+    in.Fail("urdf", error.what());
+  }
+  if (std::filesystem::exists(urdf.path)) return urdf;
+  in.Fail("urdf", fmt::format("wanted a file that is there, but {} is not; write its path as seen "
+                              "from the profile's folder",
+                              urdf.path));
+}
+
 Robot LoadRobot(const std::string& profile_path) {
   ParamReader in = ParamReader::FromFile(profile_path);
   RequireSomeProfile(in, profile_path);
   Robot robot;
   robot.profile = ReadProfile(&in);
-  const UrdfFile urdf = UrdfOf(profile_path, robot.profile);
-  if (!std::filesystem::exists(urdf.path)) {
-    in.Fail("urdf",
-            fmt::format("wanted a file that is there, but {} is not; write its path as seen "
-                        "from the profile's folder",
-                        urdf.path));
-  }
+  const UrdfFile urdf = UrdfIn(in, profile_path, robot.profile);
   const std::string xml = ReadUrdfFile(urdf);
   UrdfReading reading = ReadUrdf(xml, urdf.path);
   robot.model = std::move(reading.model);

@@ -7,6 +7,7 @@
 
 #include "hires/base/error.h"
 #include "hires/base/text.h"
+#include "hires/robot/link_bounds.h"
 #include "translation/body.h"
 
 namespace hires::translation {
@@ -167,8 +168,7 @@ class Reader {
   void ReadOn(const Atom& atom) {
     RequireModel(atom, 0);
     if (Argument(atom, 1) == kTrayArea && !context_.areas.Find(kTrayArea)) {
-      Refuse(atom, fmt::format("robot '{}' has no tray; name a tray_link in its profile",
-                               context_.robot->model.name));
+      Refuse(atom, robot::NoTrayText(*context_.robot));
     }
     const Area& area = RequireArea(atom, 1);
     if (area.kind == AreaKind::kSeat || area.kind == AreaKind::kRoom) {

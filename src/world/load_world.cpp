@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cctype>
 #include <filesystem>
 #include <locale>
 #include <optional>
@@ -167,6 +168,13 @@ class WorldBuilder {
                       path, in.Name(), gravity.X(), gravity.Y(), gravity.Z()));
     }
     world_.gravity = std::abs(gravity.Z());
+    constexpr double kEarths = 9.81, kOff = 0.1;  // [m/s^2] what worlds of the Earth differ by
+    if (std::abs(world_.gravity - kEarths) <= kOff) return;
+    notes_->Add("world",
+                fmt::format("whose <gravity> is {:g} m/s^2: all falls and tips by that, as nothing "
+                            "does on Earth",
+                            world_.gravity),
+                fmt::format("{} '{}'", path, in.Name()));
   }
 
   WorldModel WorldModelOf(const sdf::Model& model) {
@@ -393,7 +401,19 @@ ObjectModel LoadSdfObject(const std::string& path, const ResourceFinder& finder,
   return object;
 }
 
-ObjectModel LoadObjectOf(const std::string& path, LoadNotes* notes) {
+/// What it is called in requests and plans, which know letters, digits and _ alone: others become
+/// _.
+std::string PlainName(const std::string& name) {
+  std::string plain;
+  for (const unsigned char letter : name) {
+    const bool is_plain = std::isalnum(letter) != 0 || letter == '_';
+    if (is_plain || plain.empty() || plain.back() != '_')
+      plain += is_plain ? static_cast<char>(letter) : '_';
+  }
+  return plain;
+}
+
+ObjectModel ReadObject(const std::string& path, LoadNotes* notes) {
   const std::filesystem::path folder = std::filesystem::absolute(path).parent_path();
   // Models stand beside each other: model://other is found from models/this/model.sdf.
   const ResourceFinder finder(base::ModelFoldersFor(path, {folder.parent_path().string()}));
@@ -403,6 +423,17 @@ ObjectModel LoadObjectOf(const std::string& path, LoadNotes* notes) {
   if (ending == ".yaml") return LoadPlainObject(path);
   throw base::ConfigError(
       fmt::format("{}: an object file ends in .sdf, .urdf or .yaml; rename or convert it", path));
+}
+
+ObjectModel LoadObjectOf(const std::string& path, LoadNotes* notes) {
+  ObjectModel object = ReadObject(path, notes);
+  const std::string plain = PlainName(object.name);
+  if (plain == object.name) return object;
+  notes->Add("object",
+             fmt::format("whose name has more than letters, digits and _: it is {}", plain),
+             fmt::format("{} '{}'", path, object.name));
+  object.name = plain;
+  return object;
 }
 
 }  // namespace
@@ -426,11 +457,21 @@ World LoadWorldInParts(const std::string& sdf_path, const std::vector<std::strin
   return builder.Finish(sdf_path, areas);
 }
 
+std::string ObjectNameIn(const std::string& path) {
+  LoadNotes unsaid;
+  return LoadObjectOf(path, &unsaid).name;
+}
+
 ObjectModel LoadObjectModel(const std::string& path) {
   LoadNotes notes;
   ObjectModel object = LoadObjectOf(path, &notes);
+  const std::string place = fmt::format("{} '{}'", path, object.name);
+  const bool is_doubted = !object.notes.empty();  // a mesh by itself
+  const std::string large = is_doubted ? "" : DoubtOfSize(object);
+  if (!large.empty()) notes.Add("object", large, place);
+  for (const std::string& doubt : DoubtsOfMass(object)) notes.Add("object", doubt, place);
   const std::string moved = PutOriginAtUnderside(&object);
-  if (!moved.empty()) notes.Add("object", moved, fmt::format("{} '{}'", path, object.name));
+  if (!moved.empty()) notes.Add("object", moved, place);
   for (std::string& note : notes.Sentences()) object.notes.push_back(std::move(note));
   for (const std::string& note : object.notes)
     base::Log(base::LogLevel::kWarn, fmt::format("object={} note=\"{}\"", object.name, note));

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "hires/world/world.h"
 
@@ -11,6 +12,14 @@ namespace hires::world {
 /// @return what came and what was taken, for LoadNotes behind "model" or "link"; "" if it stays.
 /// @pre it has shapes, and geometry::WhyUnphysical says nothing.
 std::string MendInertia(ObjectModel* object);
+
+/// What suggests that a file means other units, or another place of its mass: more mass than any
+/// matter has in the box round its shapes, a centre of mass outside of that box. It stays as it is.
+/// @return for LoadNotes behind "model" or "object".
+std::vector<std::string> DoubtsOfMass(const ObjectModel& object);
+
+/// That something to carry or to put somewhere is larger than 3 m; "" if it is not. For LoadNotes.
+std::string DoubtOfSize(const ObjectModel& object);
 
 /// [m] Over the origin, along its z axis; 0 without shapes.
 double LowestOf(const ObjectModel& object);

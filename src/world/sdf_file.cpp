@@ -204,6 +204,11 @@ std::optional<sdf::Root> ReadSdf(const std::string& path, const ResourceFinder& 
     throw base::ConfigError(
         fmt::format("{}: its outermost element is <{}>, wanted <sdf>", path, files.at(path).root));
   }
+  if (files.at(path).num_models > 1) {
+    throw base::ConfigError(fmt::format(
+        "{}: has {} <model> elements at its top, wanted one; give each a file of its own", path,
+        files.at(path).num_models));
+  }
   QuickReader reader(files, notes);
   std::optional<sdf::Root> root = Load(reader.Read(path), path, notes);
   AddConsole(console, path, notes);

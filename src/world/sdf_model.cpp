@@ -392,6 +392,7 @@ PlayedModel PlayedModelOf(const sdf::Model& model, const geometry::Pose3& X_MB, 
   }
   try {
     played.object = ObjectOf(model, links, played.shapes.collisions, reading.notes);
+    for (const std::string& doubt : DoubtsOfMass(*played.object)) note(doubt);
   } catch (const base::ConfigError& error) {
     reading.notes->AddProblem(error.what());
   }

@@ -488,6 +488,39 @@ TEST(CommandLineTest, RefusesEmptyAlternatives) {
   ExpectRefused(with({"--arg", "Window,"}), {"empty"});
   ExpectRefused(with({"--arg", ""}), {"empty"});
   ExpectRefused(with({"--arg="}), {"--arg"});
+  ExpectRefused(with({"--arg", "Window, ,Door"}), {"empty"});
+}
+
+TEST(CommandLineTest, BlanksRoundAlternativesAreNoneOfTheirNames) {
+  for (const char* alternatives : {"Window, Inside", " Window ,Inside ", "Window\t,\tInside"}) {
+    const Ended ended = Small().Imagine(
+        {"--action", "move_base", "--from", "Door", "--arg", alternatives, "--rollouts", "1"});
+    EXPECT_THAT(ended.out, AllOf(HasSubstr("move_base(window)"), HasSubstr("move_base(inside)")))
+        << alternatives << ended.err;
+  }
+}
+
+TEST(CommandLineTest, AnEmptyValueIsNotTakenForTheDefault) {
+  for (const char* option :
+       {"--world", "--map", "--robot", "--objects", "--object", "--uncertainty", "--scene",
+        "--config", "--ranking", "--json", "--html"}) {
+    for (const char* empty : {"", " "}) {
+      ExpectRefused(Small().Imagine(kDrive + std::vector<std::string>{option, empty}),
+                    {option, "an empty text came"});
+    }
+  }
+  ExpectRefused(
+      RunHires({"imagine"}, kDrive + std::vector<std::string>{"--json", "", "--robot", ""}),
+      {"--robot", "--json"});
+  for (const std::vector<std::string>& words :
+       std::vector<std::vector<std::string>>{{"limits", "--object", "peppermill1", "--robot", ""},
+                                             {"doctor", "--world", ""},
+                                             {"list", "areas", "--world", ""},
+                                             {"new", "robot", ""},
+                                             {"new", "robot", "cart.urdf", "--output", ""},
+                                             {"blackboard", "stats", "--store", ""}}) {
+    ExpectRefused(RunHires(words), {"an empty text came"});
+  }
 }
 
 TEST(CommandLineTest, NamesMissingFiles) {

@@ -66,6 +66,18 @@ TEST_F(FileDoctorTest, FilesAreReadAndADriveIsPlayedBetweenTheFarthestAreas) {
   EXPECT_EQ(base::ReadTextFile(Path("top.png")).substr(1, 3), "PNG");
 }
 
+TEST_F(FileDoctorTest, TheDriveIsBetweenAreasThatWereAskedFor) {
+  const std::vector<std::string> files{"--world", World("2"), "--robot", Write("box.urdf", kBox)};
+  const auto drive = [&](std::vector<std::string> areas) {
+    areas.insert(areas.begin(), files.begin(), files.end());
+    return Doctor(areas).out;
+  };
+  EXPECT_THAT(drive({"--area", "left:0,-1,0", "--area", "right:0.5,-1,0"}),
+              AllOf(HasSubstr("5 areas"), HasSubstr("drive from left to right")));
+  EXPECT_THAT(drive({"--area", "left:0.5,-1,0"}), HasSubstr("drive from far to near"))
+      << "one alone is no drive";
+}
+
 TEST_F(FileDoctorTest, WhatIsWrongWithOneFileHidesNothingOfTheOthers) {
   const Ended ended =
       Doctor({"--world", Write("hall.world", "<sdf version='1.9'><world"), "--robot",

@@ -318,7 +318,7 @@ TEST_F(LocaliseCommandTest, BadInputIsRefused) {
   refused(Localise(log, {"--initial", "2 2 90"}), "90 degrees are 1.5708");
   refused(Localise(log, {"--initial", "-2 1 0"}),
           "(-2, 1) lies outside of " + map + ", which reaches from (0, 0) to (12, 8)");
-  refused(Localise(log, {"--initial", ""}), "has 0 numbers");
+  refused(Localise(log, {"--initial", ""}), "--initial: an empty text came");
 
   const auto log_of = [&](const std::string& text) { return folder_.Write("bad.log", text); };
   refused(Localise(log_of("ODOM 0 0 0 0 0 0 1 nohost 1\n")), "bad.log: has no scan");

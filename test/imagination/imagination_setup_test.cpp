@@ -535,7 +535,8 @@ TEST(StartStateTest, RefusesALoadWithoutATray) {
   const ImaginationSetup setup = file.Load();
   EXPECT_NO_THROW(MakeStartState(setup, "door", {}));
   EXPECT_THAT(ConfigErrorOf([&] { MakeStartState(setup, "door", {"mill1"}); }),
-              AllOf(HasSubstr("robot 'cart' has no tray"), HasSubstr("tray_link")));
+              AllOf(HasSubstr("robot 'cart' has no tray"), HasSubstr("tray_link"),
+                    HasSubstr("nothing is over the middle of tray_link")));
 }
 
 TEST(StartStateTest, NoRobotStartsOnAnotherStorey) {

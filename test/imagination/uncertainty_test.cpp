@@ -91,6 +91,20 @@ TEST(UncertaintyTest, RefusesMissingKeysAndKeysOfOtherDistributions) {
               HasSubstr("start_x.sd"));
 }
 
+TEST(UncertaintyTest, SaysAllKeysAtOnceThatAreMissing) {
+  const std::vector<std::pair<std::string, std::vector<std::string>>> numbers{
+      {"fixed", {"value"}},
+      {"uniform", {"lower", "upper"}},
+      {"normal", {"mean", "sd"}},
+      {"lognormal", {"median", "log_sd"}},
+      {"laplace", {"mean", "distance"}}};
+  for (const auto& [kind, keys] : numbers) {
+    const std::string why = WhyRefused("start_x: {distribution: " + kind + "}");
+    for (const std::string& key : keys) EXPECT_THAT(why, HasSubstr("start_x." + key)) << kind;
+    EXPECT_THAT(why, AllOf(HasSubstr("start_x.unit"), HasSubstr("start_x.source are missing")));
+  }
+}
+
 TEST(UncertaintyTest, RefusesWhatIsNoMapOfMaps) {
   EXPECT_THAT(WhyRefused("start_x: 0.3"), AllOf(HasSubstr("start_x"), HasSubstr("a map")));
   EXPECT_THAT(WhyRefused("[a, b]"), AllOf(HasSubstr("u.yaml"), HasSubstr("a map")));

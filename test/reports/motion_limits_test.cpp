@@ -181,6 +181,18 @@ TEST(MotionLimitsTest, ACarTurnsRoundItsSmallestCircle) {
   EXPECT_EQ(report->num_directions, 1);
 }
 
+TEST(MotionLimitsTest, WhatStandsFirmlyIsAskedForAsFarAsTheWheelsBringTheBase) {
+  const auto casters = SetupWith(nullptr, "");  // at full speed and turning, they slip
+  for (const std::string object : {"coffee_cup1", "bowl1"}) {
+    LimitsRequest request = Mill(0.3);
+    request.object = object;
+    const auto report = FindLimits(request, casters, {2, {}, {}});
+    ASSERT_TRUE(report) << object;
+    EXPECT_GT(report->Of("together").value, 0.0) << object;
+    EXPECT_LE(report->Of("together").value, 1.0) << object;
+  }
+}
+
 TEST(MotionLimitsTest, EndsWhenItIsCancelled) {
   EXPECT_FALSE(FindLimits(Mill(0.3), SetupWith(nullptr, ""), {2, [] { return true; }, {}}));
 }

@@ -1,10 +1,16 @@
 #include "hires/robot/load_robot.h"
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <string>
+#include <utility>
+#include <vector>
+
 #include "hires/base/error.h"
 #include "hires/base/text.h"
+#include "hires/robot/link_bounds.h"
 #include "support/messages.h"
 #include "support/temporary_folder.h"
 
@@ -46,6 +52,51 @@ TEST(LoadAnyRobotTest, AUrdfThatIsMissingNamesTheProfile) {
   EXPECT_THAT(hires::test_support::ConfigErrorOf([&] { LoadAnyRobot(profile); }),
               testing::AllOf(testing::HasSubstr(profile + ": urdf is 'nowhere/cart.urdf'"),
                              testing::HasSubstr("from the profile's folder")));
+}
+
+/// A box with boards over one another, 0.3 m apart, each so long.
+std::string ShelfUrdf(const std::vector<std::pair<std::string, double>>& boards) {
+  std::string text =
+      "<robot name='shelf'><link name='base_link'><collision><origin xyz='0 0 0.1'/><geometry><box "
+      "size='0.5 0.4 0.2'/></geometry></collision></link>";
+  double height = 0.2;
+  for (const auto& [name, length] : boards) {
+    height += 0.3;
+    text += fmt::format(
+        "<link name='{0}'><collision><geometry><box size='{1} 0.3 0.02'/></geometry></collision>"
+        "</link><joint name='{0}_j' type='fixed'><origin xyz='0 0 {2}'/><parent link='base_link'/>"
+        "<child link='{0}'/></joint>",
+        name, length, height);
+  }
+  return text + "</robot>";
+}
+
+TEST(LoadAnyRobotTest, OfSeveralTraysTheOthersAreNamed) {
+  const hires::test_support::TemporaryFolder folder;
+  const auto told = [&](const std::vector<std::pair<std::string, double>>& boards) {
+    return base::Join(LoadAnyRobot(folder.Write("shelf.urdf", ShelfUrdf(boards))).assumed, "\n");
+  };
+  EXPECT_THAT(told({{"tray_1", 0.4}, {"tray_2", 0.4}, {"tray_clip", 0.05}}),
+              testing::AllOf(testing::HasSubstr("'tray_1'"),
+                             testing::HasSubstr("; tray_2 may be meant as well")));
+  EXPECT_THAT(told({{"low_tray", 0.3}, {"mid_tray", 0.4}, {"top_tray", 0.3}}),
+              testing::AllOf(testing::HasSubstr("'mid_tray'"), testing::HasSubstr("low_tray"),
+                             testing::HasSubstr("top_tray")));
+  for (const char* other : {"shelf", "tray_clip"}) {
+    EXPECT_THAT(told({{"tray", 0.4}, {other, 0.1}}),
+                testing::Not(testing::HasSubstr("may be meant as well")));
+  }
+}
+
+TEST(LoadAnyRobotTest, LinksThatNothingCoversAreFoundLargestFirst) {
+  const hires::test_support::TemporaryFolder folder;
+  const auto open = [&](const std::vector<std::pair<std::string, double>>& boards) {
+    return LinksOpenAbove(LoadAnyRobot(folder.Write("shelf.urdf", ShelfUrdf(boards))));
+  };
+  EXPECT_THAT(open({}), testing::ElementsAre("base_link"));
+  EXPECT_THAT(open({{"deck", 0.4}}), testing::ElementsAre("deck"));
+  EXPECT_THAT(open({{"low", 0.4}, {"high", 0.2}}), testing::ElementsAre("high"));
+  EXPECT_THAT(open({{"rail", 0.05}}), testing::IsEmpty());
 }
 
 TEST(LoadAnyRobotTest, AFileThatIsMissingIsAnErrorOfItsKind) {

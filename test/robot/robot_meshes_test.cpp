@@ -86,6 +86,29 @@ TEST_F(RobotMeshes, PackageThatHoldsTheUrdf) {
   EXPECT_EQ(MeshOf(LoadRobotModel(urdf))->triangles.size(), 1u);
 }
 
+TEST_F(RobotMeshes, AProfileMayNameItsUrdfInAPackage) {
+  const std::string urdf =
+      "<robot name='cart'><link name='base'><collision><origin xyz='0 0 0.1'/><geometry><box "
+      "size='0.4 0.3 0.2'/></geometry></collision></link></robot>";
+  folder_.Write("ws/cart_description/package.xml", "<package/>");
+  folder_.Write("ws/cart_description/urdf/cart.urdf", urdf);
+  const auto named = [](const std::string& name) { return "urdf: package://" + name + "\n"; };
+  SetPackagePath((folder_.path() / "ws").string());
+  const std::string elsewhere =
+      folder_.Write("mine/cart.yaml", named("cart_description/urdf/cart.urdf"));
+  EXPECT_EQ(LoadRobot(elsewhere).model.name, "cart");
+  SetPackagePath("");
+  const std::string inside = folder_.Write("ws/cart_description/config/cart.yaml",
+                                           named("cart_description/urdf/cart.urdf"));
+  EXPECT_EQ(LoadRobot(inside).model.name, "cart");
+  for (const char* missing : {"cart_description/urdf/cat.urdf", "cat_description/urdf/cart.urdf"}) {
+    const std::string profile = folder_.Write("ws/cart_description/config/c.yaml", named(missing));
+    EXPECT_THAT([&] { LoadRobot(profile); },
+                ThrowsMessage<base::ConfigError>(
+                    AllOf(HasSubstr("c.yaml: urdf"), HasSubstr(missing), HasSubstr("line 1"))));
+  }
+}
+
 TEST_F(RobotMeshes, SeveralSlashesAreOne) {
   folder_.Write("arm_description/package.xml", "<package/>");
   folder_.Write("arm_description/meshes/hand.obj", kTriangle);

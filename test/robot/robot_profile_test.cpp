@@ -349,6 +349,21 @@ TEST_F(RobotProfileFile, RefusesMissingAndUnknownKeys) {
                 {"loop_dampening' is unknown"});
 }
 
+TEST_F(RobotProfileFile, SaysAllLimitsAtOnceThatAreMissing) {
+  ExpectRefused("max_angular_velocity: 1.1, max_linear_acceleration: 1.2, ", "",
+                {"motion_sets.Brisk.max_angular_velocity, "
+                 "motion_sets.Brisk.max_linear_acceleration are missing"});
+  ExpectRefused("max_linear_velocity: 1.5, max_angular_velocity: 2.5, ", "",
+                {"base_controller.limits.max_linear_velocity, "
+                 "base_controller.limits.max_angular_velocity are missing"});
+}
+
+TEST_F(RobotProfileFile, APlaceOnTheTrayNeedsNoRotation) {
+  const Robot upright = LoadRobot(WriteWith(", rpy: [0.0, 0.0, 0.1]", ""));
+  EXPECT_EQ(upright.profile.X_TO.translation, Eigen::Vector3d(0.05, 0.0, 0.02));
+  EXPECT_TRUE(upright.profile.X_TO.rotation.isApprox(Eigen::Quaterniond::Identity()));
+}
+
 TEST_F(RobotProfileFile, ACarLikeDriveHasATurningRadius) {
   const auto car = [&](const std::string& radius) {
     return WriteWith("drive: differential", "drive: car_like" + radius);

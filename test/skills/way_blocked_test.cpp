@@ -4,10 +4,14 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <memory>
+#include <string>
+#include <vector>
 
 #include "hires/base/rng.h"
+#include "hires/geometry/angles.h"
 #include "hires/world/occupancy_grid.h"
 #include "skills/point_robot.h"
 #include "support/rounds.h"
@@ -163,6 +167,44 @@ robot::Robot WithRootAskew(double length, double width, double askew) {
 
 // What is wider than a door by a few mm is said to be, with both widths; what has two cells to
 // spare at each side finds its way.
+/// With a bed far to one side: what a round robot would stand clear of, the bed reaches into.
+robot::Robot WithBed(double length, double yaw) {
+  robot::Robot robot = TrayRobot();
+  std::vector<Eigen::Vector2d> corners = robot.profile.footprint;
+  for (const double side : {0.2, -0.2}) {
+    corners.push_back(Eigen::Rotation2Dd(yaw) * Eigen::Vector2d(length, side));
+  }
+  robot.profile.footprint = geometry::ConvexHull(corners);
+  return robot;
+}
+
+TEST(WayBlockedTest, AGoalAtWhichOnlyTheHeadingIsWrongSaysWhatReachesIntoWhat) {
+  base::Rng rng(14);
+  const std::vector<std::string> sides{"front", "left", "back", "right"};
+  for (int i = 0; i < Rounds(40); ++i) {
+    const double length = rng.Uniform(1.0, 1.6), yaw = rng.Uniform(-3.0, 3.0);
+    const int side = i % 4;
+    world::World world;
+    for (const double end : {-12.0, 12.0}) {  // so large is the map
+      world.statics.push_back(Block("end", {0.2, 0.2, 2.0}, {end, end, 1.0}));
+    }
+    const Pose2 X_MT{rng.Uniform(2.0, 5.0), rng.Uniform(-3.0, 3.0), yaw};
+    const Eigen::Vector2d p_M =
+        (X_MT * Pose2{0.0, 0.0, side * 0.5 * geometry::kPi} * Pose2{length - 0.1, 0.0, 0.0})
+            .position();
+    world.statics.push_back(Block("post", {0.3, 0.3, 1.0}, {p_M.x(), p_M.y(), 0.5}));
+    world.sources["post"] = "hall.world:2";
+    const auto context = std::make_shared<const DrivingContext>(
+        MakeDrivingContext(world, WithBed(length, side * 0.5 * geometry::kPi), MoveBaseParams{}));
+    const Status status = FirstWord(context, X_MT * Pose2{-4.0, 0.0, 0.0}, X_MT);
+    ASSERT_EQ(status.failure.code, FailureCode::kGoalBlocked) << "length " << length;
+    EXPECT_THAT(
+        status.failure.detail,
+        AllOf(HasSubstr(fmt::format("m to the {}, into 'post' (hall.world:2)", sides[side])),
+              HasSubstr("turn it"), ::testing::Not(HasSubstr("wanted at least"))));
+  }
+}
+
 TEST(WayBlockedTest, WhatIsSaidOfADoorAgreesWithWhetherTheFootprintFits) {
   base::Rng rng(15);
   int num_wider = 0;

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <string>
 #include <tuple>
+#include <utility>
 #include <vector>
 
 #include "hires/base/error.h"
@@ -324,6 +325,96 @@ std::string CanWithMiddleAt(double z, bool is_urdf) {
       "</inertial><collision name='c'><geometry><cylinder><radius>0.03</radius><length>0.12"
       "</length></cylinder></geometry></collision></link></model>",
       z);
+}
+
+TEST_F(ObjectModelTest, NamesThatRequestsDoNotKnowBecomePlainOnesAndAreSaid) {
+  const std::vector<std::pair<std::string, std::string>> names{
+      {"can", "can"},           {"can_2", "can_2"}, {"a__b", "a__b"},      {"Coke Can", "Coke_Can"},
+      {"can.urdf", "can_urdf"}, {"can-2", "can_2"}, {"can (1)", "can_1_"}, {"T\u00fcte", "T_te"}};
+  for (const auto& [name, plain] : names) {
+    for (const bool is_urdf : {true, false}) {
+      std::string text = CanWithMiddleAt(0.06, is_urdf);
+      text.replace(text.find("name='can'"), 10, "name='" + name + "'");
+      const std::string path =
+          folder_.Write(is_urdf ? "can.urdf" : "can.sdf", is_urdf ? text : ModelFile(text));
+      const ObjectModel can = LoadObjectModel(path);
+      EXPECT_EQ(can.name, plain);
+      EXPECT_EQ(ObjectNameIn(path), plain);
+      if (name == plain) {
+        EXPECT_THAT(can.notes, testing::IsEmpty()) << name;
+      } else {
+        EXPECT_THAT(can.notes,
+                    ElementsAre(AllOf(HasSubstr("it is " + plain), HasSubstr("'" + name + "'"))));
+      }
+    }
+  }
+}
+
+TEST_F(ObjectModelTest, AFileOfSeveralModelsIsRefusedWithTheirNumber) {
+  for (int count = 2; count < 5; ++count) {
+    std::string models;
+    for (int i = 0; i < count; ++i) {
+      std::string text = CanWithMiddleAt(0.06, false);
+      models += text.replace(text.find("'can'"), 5, fmt::format("'can{}'", i));
+    }
+    try {
+      LoadObjectModel(folder_.Write("cans.sdf", ModelFile(models)));
+      ADD_FAILURE() << count;
+    } catch (const base::ConfigError& error) {
+      EXPECT_THAT(error.what(), HasSubstr(fmt::format("has {} <model> elements", count)));
+    }
+  }
+}
+
+/// A can as high as it is wide, all lengths and the mass times a factor.
+std::string CanTimes(double length, double mass, double com_height, bool is_urdf) {
+  const double moment = 0.12 * mass * length * length;
+  if (is_urdf) {
+    return fmt::format(
+        "<robot name='can'><link name='l'><inertial><origin xyz='0 0 {0}'/><mass value='{1}'/>"
+        "<inertia ixx='{2}' ixy='0' ixz='0' iyy='{2}' iyz='0' izz='{2}'/></inertial><collision>"
+        "<origin xyz='0 0 {3}'/><geometry><cylinder radius='{3}' length='{4}'/></geometry>"
+        "</collision></link></robot>",
+        com_height, mass, moment, 0.5 * length, length);
+  }
+  return fmt::format(
+      "<model name='can'><link name='l'><inertial><pose>0 0 {0} 0 0 "
+      "0</pose><mass>{1}</mass><inertia>"
+      "<ixx>{2}</ixx><iyy>{2}</iyy><izz>{2}</izz></inertia></inertial><collision name='c'>"
+      "<pose>0 0 {3} 0 0 0</pose><geometry><cylinder><radius>{3}</radius><length>{4}</length>"
+      "</cylinder></geometry></collision></link></model>",
+      com_height, mass, moment, 0.5 * length, length);
+}
+
+TEST_F(ObjectModelTest, WhatSuggestsOtherUnitsOrAMassElsewhereIsSaidAndStays) {
+  struct Case {
+    double length, mass, com_height;
+    std::string said;  // "": nothing
+  };
+  const std::vector<Case> cases{{0.1, 0.3, 0.05, ""},
+                                {0.1, 15.0, 0.05, ""},  // gold
+                                {0.1, 300.0, 0.05, "in grams it would be 0.3 kg"},
+                                {10.0, 0.3, 5.0, "in mm it would be 0.01 x 0.01 x 0.01 m"},
+                                {0.1, 0.3, 0.105, ""},
+                                {0.1, 0.3, 0.5, "lies 0.4 m outside"},
+                                {0.1, 0.3, -0.2, "lies 0.2 m outside"}};
+  for (const Case& each : cases) {
+    for (const bool is_urdf : {true, false}) {
+      const std::string text = CanTimes(each.length, each.mass, each.com_height, is_urdf);
+      const ObjectModel can = LoadObjectModel(
+          folder_.Write(is_urdf ? "can.urdf" : "can.sdf", is_urdf ? text : ModelFile(text)));
+      EXPECT_EQ(can.mass_properties.mass, each.mass);
+      if (each.said.empty()) {
+        EXPECT_THAT(can.notes, testing::IsEmpty()) << each.mass << " " << each.com_height;
+      } else {
+        EXPECT_THAT(can.notes, testing::Contains(AllOf(HasSubstr(each.said), HasSubstr("'can'"))));
+      }
+    }
+  }
+  const World world =
+      LoadWorld(folder_.Write("can.world", WorldText(CanTimes(0.1, 300.0, 0.05, false))));
+  EXPECT_THAT(world.notes,
+              ElementsAre(AllOf(HasSubstr("1 model whose 300 kg"), HasSubstr("'can'"))));
 }
 
 TEST_F(ObjectModelTest, AnObjectOfAFileStandsOnItsLowestPointWhereverItsOriginIs) {

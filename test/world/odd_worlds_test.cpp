@@ -162,6 +162,24 @@ std::vector<Oddity> Oddities() {
       {"too few numbers", true,
        [](Name n) { return StaticShape(n, "<box><size>1 1</size></box>"); },
        "<size> in <box> is '1 1', wanted 3 numbers"},
+      {"static in other words", true,
+       [](Name n) {
+         return "<model name='" + n + "'><static>yes_" + n + "</static>" + LinkWithShape(kUnitBox) +
+                "</model>";
+       },
+       "<static> is 'yes_%s', wanted true or false"},
+      {"static in capitals", false,
+       [](Name n) {
+         return "<model name='" + n + "'><static> TRUE </static>" + LinkWithShape(kUnitBox) +
+                "</model>";
+       },
+       ""},
+      {"commas", false,
+       [](Name n) {
+         return StaticModel(n, "<pose>1, 2, 0.5, 0, 0, 0</pose>" +
+                                   LinkWithShape("<box><size>1,1, 1</size></box>"));
+       },
+       ""},
       {"two links of one name", true,
        [](Name n) {
          return StaticModel(n, "<link name='l_" + n + "'/><link name='l_" + n + "'/>");

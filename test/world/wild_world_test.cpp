@@ -678,6 +678,17 @@ TEST_F(WildWorldTest, GravityOfOldWorldsIsRead) {
   EXPECT_EQ(Load("<physics type='ode'><gravity>0 0 -1.6</gravity></physics>", "1.5").gravity, 1.6);
 }
 
+TEST_F(WildWorldTest, AnotherGravityThanTheEarthsIsSaid) {
+  for (const char* earths : {"9.8", "9.81", "9.80665", "9.78", "9.83"}) {
+    EXPECT_THAT(Load("<gravity>0 0 -" + std::string(earths) + "</gravity>", "1.7").notes,
+                IsEmpty());
+  }
+  for (const char* other : {"0", "1.62", "3.7", "98.1"}) {
+    EXPECT_THAT(Load("<gravity>0 0 -" + std::string(other) + "</gravity>", "1.7").notes,
+                ElementsAre(HasSubstr("<gravity> is " + std::string(other) + " m/s^2")));
+  }
+}
+
 // --- versions and XML ----------------------------------------------------------------------------
 
 TEST_F(WildWorldTest, NewerVersionsAreReadAsFarAsTheirElementsAreKnown) {

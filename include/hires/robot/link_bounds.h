@@ -19,4 +19,13 @@ std::vector<geometry::Aabb> LinkBounds(const Robot& robot);
 /// reaches to a side.  @param bounds  LinkBounds(robot)
 std::string WidestLink(const Robot& robot, const std::vector<geometry::Aabb>& bounds);
 
+/// Links on which things could stand: the box round their shapes is 0.1 m long and wide at least,
+/// and nothing of another link is over its middle. The largest first.
+/// @pre as LinkBounds
+std::vector<std::string> LinksOpenAbove(const Robot& robot);
+
+/// "robot 'husky' has no tray; ...": with what to write, and on which links things could stand.
+/// @pre as LinkBounds, and the robot's tray_link is empty
+std::string NoTrayText(const Robot& robot);
+
 }  // namespace hires::robot

@@ -112,10 +112,14 @@ World LoadWorld(const std::string& sdf_path, const std::vector<std::string>& mod
 
 /// Reads a single-link object from an SDF model (.sdf, model.sdf) or a URDF (.urdf), or a cylinder
 /// or box of given size and mass (.yaml: docs/command_line.md). Where its origin is not at the
-/// height of its lowest point, it is put there. What is played otherwise than it is written is said
+/// height of its lowest point, it is put there; its name has letters, digits and _ alone, others
+/// become _. What is played otherwise than it is written is said
 /// in ObjectModel::notes and to base::Log.
 /// @throws base::ConfigError as LoadWorld, and as base::ParamReader.
 ObjectModel LoadObjectModel(const std::string& path);
+
+/// What it is called, for one that is loaded later: nothing is said.  @throws as LoadObjectModel.
+std::string ObjectNameIn(const std::string& path);
 
 /// An extent without its outermost `edge` [m]; it goes on holding the origin.
 Eigen::AlignedBox2d Inset(const Eigen::AlignedBox2d& extent, double edge);

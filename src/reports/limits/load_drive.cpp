@@ -22,6 +22,8 @@ constexpr double kFollows = 0.05;  // [m/s], [rad/s] and ...
 constexpr double kSlips =
     0.1;  // ... of what is commanded: so far off a base follows it, as wheels slip
 constexpr double kLongest = 60.0;  // [s] for the base to come to what is commanded
+constexpr double kNoNearer = 1.0;  // [s] after which it is as near as it comes ...
+constexpr double kNearer = 0.01;   // [m/s], [rad/s] ... where it came no nearer by so much
 enum DriveStreams : std::uint64_t { kDriveTruth, kDriveSimulator };
 
 /// The next command on the way to a velocity.
@@ -66,16 +68,22 @@ class Driver {
       V_B_ = Approach(V_B_, step, stage_.command_period);
       Command(false);
     }
-    AwaitVelocity();
+    AwaitVelocity(step.may_fall_short);
     const double end = simulator_.time() + step.hold;
     while (simulator_.time() < end && !is_down()) Command(false);
   }
 
   /// The controller may be slower than what it is told.
-  void AwaitVelocity() {
+  void AwaitVelocity(bool may_fall_short) {
     const double begin = simulator_.time();
+    double least = Shortfall(), since = begin;
     while (!is_down() && !FollowsCommand()) {
       Command(false);
+      if (Shortfall() < least - kNearer) {
+        least = Shortfall();
+        since = simulator_.time();
+      }
+      if (may_fall_short && simulator_.time() - since > kNoNearer) return;
       if (simulator_.time() - begin < kLongest) continue;
       throw base::ConfigError(
           fmt::format("the base does not come to ({:.2f}, {:.2f}) m/s and {:.2f} rad/s within "
@@ -85,12 +93,16 @@ class Driver {
     }
   }
 
-  bool FollowsCommand() const {
+  /// [m/s] or [rad/s] by which the base is farther from what is commanded than one that follows.
+  double Shortfall() const {
     const Twist2& V = simulator_.base().V_B;
-    return std::hypot(V.vx - V_B_.vx, V.vy - V_B_.vy) <
-               kFollows + kSlips * std::hypot(V_B_.vx, V_B_.vy) &&
-           std::abs(V.wz - V_B_.wz) < kFollows + kSlips * std::abs(V_B_.wz);
+    const double linear = std::hypot(V.vx - V_B_.vx, V.vy - V_B_.vy);
+    const double angular = std::abs(V.wz - V_B_.wz);
+    return std::max(linear - kFollows - kSlips * std::hypot(V_B_.vx, V_B_.vy),
+                    angular - kFollows - kSlips * std::abs(V_B_.wz));
   }
+
+  bool FollowsCommand() const { return Shortfall() < 0.0; }
 
   /// For one period of commands.
   void Command(bool is_silent) {

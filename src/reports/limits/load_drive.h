@@ -16,6 +16,9 @@ struct DriveStep {
   double angular_rate{0.5};  ///< [rad/s^2]
   double hold{0.0};          ///< [s] that it is commanded for
   bool is_silent{false};     ///< nothing is commanded: the controller's time-out strikes
+  /// Where a base comes no nearer to V_B (wheels slip, motors are at their end), what it does then
+  /// is what is driven; else that is an error.
+  bool may_fall_short{false};
 };
 using LoadDrive = std::vector<DriveStep>;
 
@@ -38,6 +41,7 @@ DriveStage MakeDriveStage(const imagination::ImaginationSetup& setup, const std:
                           double command_period);
 
 /// Plays the drive in one truth, until the load has fallen or nothing shakes any more.
+/// @pre the last step that may fall short is followed by one that commands a stand, or nothing.
 /// @param rng  of the truth, and of what the simulator draws.
 DriveOutcome PlayDrive(const DriveStage& stage, const LoadDrive& drive, const base::Rng& rng);
 

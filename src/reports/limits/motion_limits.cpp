@@ -154,7 +154,7 @@ class LimitFinder {
     const double least = ValueAt(motion.robots_own, kLastStep);
     if (*step > kLastStep) {
       throw base::ConfigError(fmt::format(
-          "object '{}' falls from the tray of '{}' at a {} of {:.3g} {} already, wanted one that "
+          "object '{}' falls from the tray of '{}' at {} of {:.3g} {} already, wanted one that "
           "can "
           "be carried; put it elsewhere (object_on_tray: in the profile) or allow more with "
           "--max-fall",
@@ -255,11 +255,13 @@ class LimitFinder {
     };
   }
 
-  /// All at once, on an arc: speeding up, and braking hard, or left without commands.
+  /// All at once, on an arc: speeding up, and braking hard, or left without commands. A base that
+  /// comes to each by itself need not come to both.
   Drives TogetherDrives() const {
     return [this, sudden = sudden()](double share, double direction) -> std::vector<LoadDrive> {
-      const DriveStep up{Along(direction, share * Found("speed"), share * Found("turning")),
-                         share * Found("acceleration"), share * sudden, kCruise};
+      DriveStep up{Along(direction, share * Found("speed"), share * Found("turning")),
+                   share * Found("acceleration"), share * sudden, kCruise};
+      up.may_fall_short = true;
       return {{up, {{}, share * Found("deceleration"), share * sudden, 0.0}}, {up, kSilence}};
     };
   }

@@ -7,6 +7,7 @@
 #include <filesystem>
 
 #include "base/captured_program.h"
+#include "base/files/package_finder.h"
 #include "base/files/plain_xml.h"
 #include "hires/base/error.h"
 #include "hires/base/log.h"
@@ -187,6 +188,10 @@ std::string TextOf(const UrdfFile& file) {
 UrdfFile UrdfOf(const std::string& profile_path, const RobotProfile& profile) {
   UrdfFile file = SplitArguments(profile.urdf);
   const fs::path folder = fs::path(SplitArguments(profile_path).path).parent_path();
+  if (file.path.rfind("package://", 0) == 0) {
+    file.path = base::PackageFinder().Find(file.path, {fs::absolute(folder).string()});
+    return file;
+  }
   file.path = (folder / file.path).lexically_normal().string();
   return file;
 }

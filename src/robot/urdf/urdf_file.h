@@ -20,7 +20,8 @@ UrdfFile SplitArguments(const std::string& path_and_arguments);
 /// The other way round.
 std::string TextOf(const UrdfFile& file);
 
-/// What a profile names, as seen from the folder of the profile (or of a URDF in its place).
+/// What a profile names, as seen from the folder of the profile (or of a URDF in its place), or in
+/// a package (package://).  @throws base::ConfigError as base::PackageFinder::Find.
 UrdfFile UrdfOf(const std::string& profile_path, const RobotProfile& profile);
 
 /// Whether a robot's text still has to be expanded: it is in a file .xacro, or has elements xacro:

@@ -222,21 +222,31 @@ class Explainer {
 
   /// The middle of the nearest cell that is no room, within kFarthestObstacle.
   std::optional<Eigen::Vector2d> NearestObstacle(const Eigen::Vector2d& p_M) const {
-    const int reach = static_cast<int>(kFarthestObstacle / costmap_.resolution());
-    int column = 0, row = 0;
-    costmap_.CellOf(p_M, &column, &row);
-    std::optional<Eigen::Vector2d> nearest;
-    double least = std::numeric_limits<double>::infinity();
-    for (int y = row - reach; y <= row + reach; ++y) {
-      for (int x = column - reach; x <= column + reach; ++x) {
-        if (!costmap_.Inside(x, y) || !IsTaken(costmap_, x, y)) continue;
-        const double distance = (costmap_.CentreOf(x, y) - p_M).squaredNorm();
-        if (distance >= least) continue;
-        least = distance;
-        nearest = costmap_.CentreOf(x, y);
-      }
+    return NearestTaken(p_M, kFarthestObstacle, nullptr);
+  }
+
+  /// "; as it is headed the base reaches 1.36 m to the back, into 'post' (hall.world:2): turn it,
+  /// or choose another place": what the base touches that would be far enough from a round one.
+  std::string TouchText(const Pose2& X_MB) const {
+    const geometry::Polygon base_M = geometry::Transformed(X_MB, context_.footprint);
+    const double reach = geometry::CircumscribedRadius(context_.footprint);
+    const auto touched = NearestTaken(X_MB.position(), reach + costmap_.resolution(), &base_M);
+    if (!touched) return "";
+    const Eigen::Vector2d p_B = Eigen::Rotation2Dd(-X_MB.yaw) * (*touched - X_MB.position());
+    const bool is_along = std::abs(p_B.x()) >= std::abs(p_B.y());
+    const Eigen::Vector2d side = is_along ? Eigen::Vector2d(std::copysign(1.0, p_B.x()), 0.0)
+                                          : Eigen::Vector2d(0.0, std::copysign(1.0, p_B.y()));
+    double farthest = 0.0;
+    for (const auto& corner : context_.footprint) {
+      farthest = std::max(farthest, corner.dot(side));
     }
-    return nearest;
+    return fmt::format(
+        "; as it is headed the base reaches {:.2f} m to the {}, into {}: turn it, or choose "
+        "another "
+        "place",
+        farthest,
+        is_along ? (side.x() > 0.0 ? "front" : "back") : (side.y() > 0.0 ? "left" : "right"),
+        WhatIsAt(*touched));
   }
 
   /// Whether no floor bears a base in the cell there, and nothing stands in it.
@@ -366,6 +376,28 @@ class Explainer {
   }
 
  private:
+  /// @param within_M  cells that touch this alone count; null: all.
+  std::optional<Eigen::Vector2d> NearestTaken(const Eigen::Vector2d& p_M, double farthest,
+                                              const geometry::Polygon* within_M) const {
+    const int reach = static_cast<int>(farthest / costmap_.resolution());
+    int column = 0, row = 0;
+    costmap_.CellOf(p_M, &column, &row);
+    std::optional<Eigen::Vector2d> nearest;
+    double least = std::numeric_limits<double>::infinity();
+    for (int y = row - reach; y <= row + reach; ++y) {
+      for (int x = column - reach; x <= column + reach; ++x) {
+        if (!costmap_.Inside(x, y) || !IsTaken(costmap_, x, y)) continue;
+        const Eigen::Vector2d centre_M = costmap_.CentreOf(x, y);
+        const double distance = (centre_M - p_M).squaredNorm();
+        if (distance >= least) continue;
+        if (within_M && geometry::Distance(*within_M, CellAt(centre_M)) > 0.0) continue;
+        least = distance;
+        nearest = centre_M;
+      }
+    }
+    return nearest;
+  }
+
   /// [m] Through a place: to the nearest thing on either side, in that direction or nearly so. The
   /// place may lie a little before the passage.
   std::optional<double> WidthBetweenThings(const Eigen::Vector2d& p_M,
@@ -600,8 +632,12 @@ std::string WhyBlocked(const DrivingContext& context, const Costmap& costmap,
     return fmt::format("{} is too narrow, {:.2f} m wide beside {}; {}{}", where, *width, what,
                        explainer.BaseText(needed), heights);
   }
-  return fmt::format("{} is {:.2f} m from {}, wanted at least {:.2f} m; {}{}", where,
-                     std::max(0.0, distance - 0.5 * costmap.resolution()), what,
+  const double clear = std::max(0.0, distance - 0.5 * costmap.resolution());
+  if (clear > explainer.LeastDistance()) {
+    return fmt::format("{} is {:.2f} m from {}{}{}", where, clear, what, explainer.TouchText(X_MB),
+                       heights);
+  }
+  return fmt::format("{} is {:.2f} m from {}, wanted at least {:.2f} m; {}{}", where, clear, what,
                      explainer.LeastDistance(), explainer.BaseText(needed), heights);
 }
 

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cstdlib>
 #include <map>
 #include <utility>
@@ -37,7 +38,7 @@ std::size_t NumbersWanted(const XMLElement& element, const std::string& parent) 
   return found == wanted.end() ? 0 : found->second;
 }
 
-/// Commas behind them are forgiven, as libsdformat does.
+/// Commas behind them are forgiven, as libsdformat does in poses.
 bool HoldsNumbers(const std::string& text, std::size_t count) {
   std::size_t found = 0;
   const char* at = text.c_str();
@@ -52,15 +53,30 @@ bool HoldsNumbers(const std::string& text, std::size_t count) {
   return found == count;
 }
 
+/// Asks of <static> alone: what else is true or false is read elsewhere, or left out.
+void CheckStatic(XMLElement* element, const std::string& path, LoadNotes* notes) {
+  const std::string text = base::ToLower(TrimmedText(element));
+  if (text.empty() || text == "1" || text == "0" || text == "true" || text == "false") return;
+  notes->AddProblem(fmt::format("{}:{}: <static> is '{}', wanted true or false", path,
+                                element->GetLineNum(), TrimmedText(element)));
+  element->SetText("1");
+}
+
 }  // namespace
 
-void CheckNumbersOf(XMLElement* element, const std::string& path, LoadNotes* notes) {
+void CheckValueOf(XMLElement* element, const std::string& path, LoadNotes* notes) {
   const XMLElement* parent = element->Parent()->ToElement();
   const std::string within = parent == nullptr ? "" : parent->Name();
   if (within.rfind(kShapePrefix, 0) == 0) return;  // as inertials, which may not be needed
+  if (element->Name() == std::string("static")) return CheckStatic(element, path, notes);
   const std::size_t wanted = NumbersWanted(*element, within);
-  const std::string text = TrimmedText(element);
-  if (wanted == 0 || text.empty() || HoldsNumbers(text, wanted)) return;
+  std::string text = TrimmedText(element);
+  if (wanted == 0 || text.empty()) return;
+  if (HoldsNumbers(text, wanted)) {
+    std::replace(text.begin(), text.end(), ',', ' ');
+    if (text != TrimmedText(element)) element->SetText(text.c_str());
+    return;
+  }
   notes->AddProblem(fmt::format("{}:{}: <{}> in <{}> is '{}', wanted {}", path,
                                 element->GetLineNum(), element->Name(), within, text,
                                 base::Counted(wanted, "number")));

@@ -8,8 +8,9 @@
 
 namespace hires::world {
 
-/// Makes a problem, with line, of an element of SDF that should hold numbers and does not, and
-/// empties it so that nobody complains of it again. Which numbers make sense others say.
-void CheckNumbersOf(tinyxml2::XMLElement* element, const std::string& path, LoadNotes* notes);
+/// Makes a problem, with line, of an element of SDF that should hold numbers, or <static>'s true or
+/// false, and does not, and gives it another text so that nobody complains of it again. Commas
+/// behind numbers become blanks. Which numbers make sense others say.
+void CheckValueOf(tinyxml2::XMLElement* element, const std::string& path, LoadNotes* notes);
 
 }  // namespace hires::world

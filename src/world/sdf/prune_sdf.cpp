@@ -201,7 +201,7 @@ class Pruner {
   void Prepare(XMLElement* element) {
     const std::string name = element->Name();
     TakeOldOrigin(element);
-    CheckNumbersOf(element, path_, notes_);
+    CheckValueOf(element, path_, notes_);
     if (name == "sdf") TakeVersion(element);
     if (name == "world") TakeOldGravity(element);
     if (name == "link") {

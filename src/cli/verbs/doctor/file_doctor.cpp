@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <iterator>
 #include <optional>
 #include <utility>
 
@@ -119,6 +120,19 @@ std::vector<reports::MarkedPlace> PlacesToStand(const ImaginationSetup& setup) {
   return places;
 }
 
+/// Those that --area adds, where they are two or more, else all: a world's frames need be no places
+/// to stand at.
+std::vector<reports::MarkedPlace> ToDriveBetween(const std::vector<reports::MarkedPlace>& places,
+                                                 const std::vector<imagination::NamedArea>& added) {
+  std::vector<reports::MarkedPlace> own;
+  std::copy_if(places.begin(), places.end(), std::back_inserter(own), [&](const auto& place) {
+    return std::any_of(added.begin(), added.end(), [&](const auto& area) {
+      return base::ToLower(area.name) == base::ToLower(place.name);
+    });
+  });
+  return own.size() < 2 ? places : own;
+}
+
 /// None: there are no two.
 std::optional<std::pair<reports::MarkedPlace, reports::MarkedPlace>> FarthestApart(
     const std::vector<reports::MarkedPlace>& places) {
@@ -223,7 +237,7 @@ void ExamineFiles(const FileDoctorOptions& options, const std::string& package_f
   });
   if (!is_set_up) return;
   std::vector<Eigen::Vector2d> way;
-  if (const auto pair = FarthestApart(places)) {
+  if (const auto pair = FarthestApart(ToDriveBetween(places, config.areas))) {
     Try(say, [&] { return PlayDrive(*setup, pair->first, pair->second, &way); });
   } else {
     say({FindingLevel::kWarning,

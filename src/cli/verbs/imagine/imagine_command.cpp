@@ -12,6 +12,7 @@
 #include <nlohmann/json.hpp>
 #include <thread>
 
+#include "base/trimmed.h"
 #include "cli/exit_code.h"
 #include "cli/own_object.h"
 #include "cli/whole_number.h"
@@ -73,6 +74,7 @@ void AddOptions(CLI::App* app, ImagineOptions* o) {
 
 std::vector<std::string> AlternativesOf(const std::string& list) {
   std::vector<std::string> alternatives = base::Split(list, ',');
+  for (std::string& alternative : alternatives) alternative = base::Trimmed(alternative);
   if (std::count(alternatives.begin(), alternatives.end(), "") > 0) {
     throw base::ConfigError(fmt::format(
         "--arg '{}': an alternative is empty; wanted names with one comma between two", list));

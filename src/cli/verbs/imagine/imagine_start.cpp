@@ -7,7 +7,9 @@
 #include <cmath>
 #include <filesystem>
 #include <iterator>
+#include <optional>
 #include <set>
+#include <utility>
 
 #include "hires/base/error.h"
 #include "hires/base/text.h"
@@ -40,6 +42,26 @@ std::vector<double> NumbersIn(const std::string& text) {
   return numbers;
 }
 
+void RefuseDegrees(const std::string& option, const std::string& text, double yaw) {
+  if (std::abs(yaw) <= 2.0 * M_PI) return;
+  throw base::ConfigError(fmt::format(
+      "{} '{}': yaw is in radians, wanted between -2 pi and 2 pi; {:g} degrees are {:.5g}", option,
+      text, yaw, yaw * M_PI / 180.0));
+}
+
+/// A name that comes again would be one thing, where two were meant.
+void RefuseTwice(const std::vector<std::string>& on_tray) {
+  std::set<std::string> seen;
+  for (const std::string& object : on_tray) {
+    if (seen.insert(base::ToLower(object)).second) continue;
+    throw base::ConfigError(
+        fmt::format("--object '{0}': came twice, wanted a name for each thing; one more of its "
+                    "kind has another "
+                    "number, as mug1 and mug2; of a file, copy it under another name",
+                    object));
+  }
+}
+
 constexpr char kPutWanted[] =
     "OBJECT:AREA, OBJECT:AREA:X,Y[,YAW] in the area's frame, or OBJECT:X,Y,Z[,YAW] in the map "
     "[m, rad]";
@@ -70,6 +92,7 @@ void ReadPut(const std::string& text, ImagineStart* start) {
   put.object = parts[0];
   if (!is_in_map) put.area = parts[1];
   const double yaw = numbers.size() > least ? numbers.back() : 0.0;
+  RefuseDegrees("--put", text, yaw);
   put.X_AO = geometry::Lift({numbers[0], numbers[1], yaw}, is_in_map ? numbers[2] : 0.0);
   start->put.push_back(put);
 }
@@ -99,6 +122,49 @@ void ReadInHand(const std::string& text, const actions::ActionSpec& action, Imag
       {"HasArmPosture", {parts[1], drives ? "ArmCarryPosture" : "ArmToSidePosture"}});
 }
 
+/// What may bear a thing: its name, and the box round one of its shapes.
+using Bearer = std::pair<std::string, geometry::Aabb>;
+
+geometry::Aabb BoundsOfObject(const world::ObjectState& object, const world::World& world) {
+  geometry::Aabb bounds;
+  for (const geometry::Collision& shape : world.ModelOf(object)->collisions)
+    bounds.Include(geometry::BoundsOf(shape.shape, object.X_MO * shape.X_BS));
+  return bounds;
+}
+
+std::vector<Bearer> BearersIn(const world::WorldState& state, const world::World& world) {
+  std::vector<Bearer> bearers;
+  for (const world::StaticBody& body : world.statics) {
+    for (const geometry::Collision& shape : body.collisions) {
+      bearers.emplace_back(world::NameOf(body, shape),
+                           geometry::BoundsOf(shape.shape, body.X_MB * shape.X_BS));
+    }
+  }
+  for (const world::ObjectState& object : state.objects)
+    bearers.emplace_back(object.name, BoundsOfObject(object, world));
+  return bearers;
+}
+
+/// The highest one that ends below the thing and lies under it; the floor where there is none.
+/// Nothing: something reaches up to it.
+std::optional<Bearer> HighestBelow(const geometry::Aabb& thing, const std::string& name,
+                                   const std::vector<Bearer>& bearers) {
+  constexpr double kDrop = 0.06;  // [m] that a thing is let go from and stays where it lands
+  Bearer highest{"the floor", {}};
+  highest.second.upper.z() = 0.0;
+  if (thing.lower.z() <= kDrop) return std::nullopt;
+  for (const Bearer& one : bearers) {
+    const geometry::Aabb& box = one.second;
+    const bool is_under = (box.lower.head<2>().array() <= thing.upper.head<2>().array()).all() &&
+                          (box.upper.head<2>().array() >= thing.lower.head<2>().array()).all() &&
+                          box.lower.z() <= thing.lower.z();
+    if (!is_under || one.first == name) continue;
+    if (box.upper.z() >= thing.lower.z() - kDrop) return std::nullopt;
+    if (box.upper.z() > highest.second.upper.z()) highest = one;
+  }
+  return highest;
+}
+
 bool IsAreaFile(const std::string& text) {
   const std::filesystem::path path(text);
   const std::string ending = base::ToLower(path.extension().string());
@@ -114,12 +180,7 @@ imagination::NamedArea ReadArea(const std::string& text) {
   if (numbers.size() != 3) {
     throw base::ConfigError(fmt::format("--area '{}': wanted {}", text, kWanted));
   }
-  if (std::abs(numbers[2]) > 2.0 * M_PI) {
-    throw base::ConfigError(
-        fmt::format("--area '{}': yaw is in radians, wanted between -2 pi and 2 pi; {:g} degrees "
-                    "are {:.5g}",
-                    text, numbers[2], numbers[2] * M_PI / 180.0));
-  }
+  RefuseDegrees("--area", text, numbers[2]);
   return {parts[0], {numbers[0], numbers[1], numbers[2]}};
 }
 
@@ -161,6 +222,26 @@ void RequireObjects(const actions::Catalogue& catalogue,
       throw base::ConfigError(fmt::format("{}: {} is in no hand; wanted --object-in-hand {}:ARM",
                                           base::ToString(action), *name, *name));
     }
+  }
+}
+
+void RequireSupport(const std::vector<imagination::PutObject>& put, const world::WorldState& state,
+                    const world::World& world, const geometry::Pose2& X_MB, double reach) {
+  const std::vector<Bearer> bearers = BearersIn(state, world);
+  for (const imagination::PutObject& one : put) {
+    const world::ObjectState* object = one.area.empty() ? state.Find(one.object) : nullptr;
+    if (object == nullptr) continue;
+    const geometry::Aabb thing = BoundsOfObject(*object, world);
+    const Eigen::Vector3d& p_M = object->X_MO.translation;
+    const bool is_on_robot = (p_M.head<2>() - X_MB.position()).norm() <= reach;
+    const auto below = HighestBelow(thing, object->name, bearers);
+    if (is_on_robot || !below) continue;
+    const double top = below->second.upper.z();
+    throw base::ConfigError(fmt::format(
+        "--put: '{}' would hang at z {:.3g} m, {:.3g} m over {}, and fall; give the height of what "
+        "it stands on: {:.3g}",
+        object->name, p_M.z(), thing.lower.z() - top,
+        top > 0.0 ? "'" + below->first + "'" : below->first, top));
   }
 }
 
@@ -211,6 +292,7 @@ ImagineStart ReadStart(const StartOptions& options, const std::string& action,
                        const actions::Catalogue& catalogue) {
   ImagineStart start;
   start.from = options.from;
+  RefuseTwice(options.on_tray);
   start.on_tray = options.on_tray;
   for (const std::string& posture : options.postures) ReadPosture(posture, &start);
   for (const std::string& held : options.in_hand) {

@@ -51,6 +51,11 @@ imagination::Report ImagineInThisProcess(const ImagineQuery& query, QueryScene* 
   const std::vector<base::ActionCall> actions = base::Combinations(query.action);
   const imagination::RolloutSetup& rollouts = scene->rollouts();
   RequireObjects(rollouts.skills->actions->catalogue(), actions, rollouts.world_state);
+  constexpr double kBesideRobot = 0.1;  // [m]
+  const simulation::Scene& scene_of_all = *rollouts.scene;
+  RequireSupport(
+      query.start.put, rollouts.world_state, scene_of_all.world, rollouts.robot_state.X_MB,
+      kBesideRobot + geometry::CircumscribedRadius(scene_of_all.robot.profile.footprint));
   imagination::Report report = imagination::ImagineLocally(rollouts, actions, query.scheduler,
                                                            query.threads, on_interim, cancelled);
   imagination::AddCaveats(rollouts, actions, query.validated, &report);
