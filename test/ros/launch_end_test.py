@@ -46,6 +46,16 @@ class LaunchEndTest(unittest.TestCase):
             launch.wait()
             self.assertEqual(launch.output().count('/nowhere/d.lisp: no such file'), 1, launch.output())
 
+    def test_so_it_does_at_once_whatever_a_node_does_with_signals(self):
+        for file, argument, text in (('worker_host.launch', 'index:=0', '~index is 0'),
+                                     ('relay.launch', 'foreign_master:=nowhere', "~foreign_master is 'nowhere'"),
+                                     ('base_guard.launch', 'navigation:=sail', "~navigation is 'sail'")):
+            launch = self.launch('hires', file, argument)
+            launch.wait()
+            self.assertIn(text, launch.output())
+            self.assertNotIn('escalating', launch.output())
+            self.assertNotIn('has died', launch.output())
+
     def test_so_it_is_in_a_launch_file_of_somebody_else_where_the_robot_is_simulated(self):
         launch = self.launch(self.processes.write('own.launch', OWN % '/nowhere/d.lisp'))
         launch.wait()

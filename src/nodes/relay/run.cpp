@@ -3,6 +3,7 @@
 #include <ros/ros.h>
 
 #include "hires/base/error.h"
+#include "hires/ros/node/launch_guard.h"
 #include "hires/ros/node/log_sink.h"
 #include "hires/ros/node/master_watch.h"
 #include "nodes/relay/relay_node.h"
@@ -21,8 +22,7 @@ int RunRelayNode(int argc, char** argv) {
     node.Run(master_watch);
     if (master_watch.silent_for() > 0.0) std::_Exit(EXIT_SUCCESS);  // or roscpp waits for it
   } catch (const hires::base::ConfigError& error) {
-    ROS_FATAL("relay: %s", error.what());
-    return EXIT_FAILURE;
+    return EndMisconfigured("relay", error);
   }
   return master_watch.Finish(EXIT_SUCCESS);
 }

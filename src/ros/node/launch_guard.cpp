@@ -6,6 +6,7 @@
 #include <ros/master.h>
 #include <ros/package.h>
 #include <ros/this_node.h>
+#include <signal.h>
 #include <sys/types.h>
 #include <unistd.h>
 
@@ -83,6 +84,10 @@ void EndLaunch() {
   if (!IsRoslaunch(CommandOf(parent))) return;
   std::fflush(nullptr);  // what was printed, before a signal ends this process
   std::signal(SIGINT, SIG_DFL);
+  sigset_t interrupt;
+  sigemptyset(&interrupt);
+  sigaddset(&interrupt, SIGINT);
+  pthread_sigmask(SIG_UNBLOCK, &interrupt, nullptr);  // nodes that wait for signals block it
   if (kill(parent, SIGINT) != 0) return;
   // A child that ends before roslaunch ends it would be called dead, or started again.
   ros::WallDuration(kPatience).sleep();
