@@ -506,6 +506,23 @@ bool IsOfUpperBody(const Robot& robot, int link) {
   });
 }
 
+/// " (they lie 50 m to 505 m above it, as if their unit were not the metre)": where the shapes are
+/// of a robot of which none is low enough; "" where it has none.
+std::string HeightsText(const RobotModel& model, const std::string& base_link,
+                        const JointPositions& joints) {
+  if (!HasShapes(model)) return "";
+  const std::vector<Pose3> X_R = ForwardKinematics(model, joints);
+  const Pose3 X_BR = X_R[*model.FindLink(base_link)].Inverse();
+  geometry::Aabb all;
+  for (std::size_t i = 0; i < model.links.size(); ++i) {
+    for (const geometry::Collision& shape : model.links[i].collisions)
+      all.Include(geometry::BoundsOf(shape.shape, X_BR * (X_R[i] * shape.X_BS)));
+  }
+  const bool is_doubted = all.upper.z() - all.lower.z() > kWidestRobot;
+  return fmt::format(" (they lie {:.3g} m to {:.3g} m above it{})", all.lower.z(), all.upper.z(),
+                     is_doubted ? ", as if their unit were not the metre" : "");
+}
+
 }  // namespace
 
 std::optional<double> LaserHeight(const Robot& robot) {
@@ -521,10 +538,10 @@ geometry::Polygon OutlineOf(const RobotModel& model, const std::string& base_lin
   geometry::Polygon outline = OutlineIfAny(model, base_link, joints);
   if (!outline.empty()) return outline;
   throw base::ConfigError(
-      fmt::format("robot '{}': no collision shape lies 0 to {} m above link '{}', so there is no "
+      fmt::format("robot '{}': no collision shape lies 0 to {} m above link '{}'{}, so there is no "
                   "footprint; add <collision> shapes, or give 'footprint' in a profile, which "
                   "`hires new robot` begins",
-                  model.name, kFootprintTop, base_link));
+                  model.name, kFootprintTop, base_link, HeightsText(model, base_link, joints)));
 }
 
 geometry::Polygon BaseOutlineOf(const Robot& robot) {

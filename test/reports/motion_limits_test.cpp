@@ -8,6 +8,7 @@
 
 #include "hires/base/error.h"
 #include "hires/physics/closed_forms.h"
+#include "support/temporary_folder.h"
 
 namespace hires::reports::motion_limits_test {
 namespace {
@@ -75,6 +76,40 @@ TEST(MotionLimitsTest, TheSpeedOfALockedWheelIsTheClosedForms) {
   ASSERT_EQ(bounds.size(), 4u);
   for (const MotionBounds& motion : bounds) {
     EXPECT_EQ(motion.closed_form, report->Of(motion.motion).closed_form) << motion.motion;
+  }
+}
+
+TEST(MotionLimitsTest, WhatIsRoundBelowRollsAtAnyMotion) {
+  const hires::test_support::TemporaryFolder folder;
+  const auto limits_of = [&](const std::string& shapes) {
+    imagination::SetupConfig config =
+        imagination::ReadSetupConfig(std::string(HIRES_SOURCE_DIR) + "/config/scene.yaml");
+    config.uncertainty = "none";
+    config.extra_objects = {folder.Write(
+        "thing.sdf",
+        "<sdf version='1.7'><model name='thing'><link name='l'><inertial><mass>0.3</mass><inertia>"
+        "<ixx>0.0003</ixx><iyy>0.0003</iyy><izz>0.0003</izz></inertia></inertial>" +
+            shapes + "</link></model></sdf>")};
+    return ClosedFormLimits("thing", imagination::LoadImaginationSetup(config));
+  };
+  const auto shape = [](const std::string& name, const std::string& pose, const std::string& text) {
+    return "<collision name='" + name + "'><pose>" + pose + "</pose><geometry>" + text +
+           "</geometry></collision>";
+  };
+  const std::string ball = "<sphere><radius>0.04</radius></sphere>";
+  const std::string can = "<cylinder><radius>0.04</radius><length>0.1</length></cylinder>";
+  for (const std::string& round :
+       {shape("a", "0 0 0 0 0 0", ball), shape("a", "0 0 0 1.5708 0.3 0", can)}) {
+    for (const MotionBounds& motion : limits_of(round)) {
+      EXPECT_EQ(motion.closed_form, 0.0) << motion.motion;
+      EXPECT_THAT(motion.stated, HasSubstr("rolls")) << motion.motion;
+    }
+  }
+  for (const std::string& firm :
+       {shape("a", "0 0 0 0 0 0", can), shape("a", "0.03 0 0 0 0 0", ball) +
+                                            shape("b", "-0.03 0.03 0 0 0 0", ball) +
+                                            shape("c", "-0.03 -0.03 0 0 0 0", ball)}) {
+    for (const MotionBounds& motion : limits_of(firm)) EXPECT_GT(motion.closed_form, 0.0);
   }
 }
 

@@ -88,6 +88,25 @@ TEST(LoadAnyRobotTest, OfSeveralTraysTheOthersAreNamed) {
   }
 }
 
+TEST(LoadAnyRobotTest, ShapesThatAreTooHighForAFootprintAreSaidWithTheirHeights) {
+  const hires::test_support::TemporaryFolder folder;
+  const auto why = [&](double unit, double lowest) {
+    return hires::test_support::ConfigErrorOf([&] {
+      LoadAnyRobot(folder.Write(
+          "bot.urdf",
+          fmt::format("<robot name='bot'><link name='base_link'><collision><origin xyz='0 0 {0}'/>"
+                      "<geometry><box size='{1} {1} {1}'/></geometry></collision></link></robot>",
+                      lowest + 0.5 * unit, unit)));
+    });
+  };
+  EXPECT_THAT(why(400.0, 50.0), testing::HasSubstr("they lie 50 m to 450 m above it, as if their "
+                                                   "unit were not the metre"));
+  EXPECT_THAT(why(40.0, 5.0), testing::HasSubstr("not the metre"));
+  EXPECT_THAT(why(1.0, 3.0), testing::AllOf(testing::HasSubstr("they lie 3 m to 4 m above it)"),
+                                            testing::Not(testing::HasSubstr("metre"))));
+  EXPECT_THAT(why(0.4, 0.05), testing::HasSubstr("no ConfigError"));
+}
+
 TEST(LoadAnyRobotTest, LinksThatNothingCoversAreFoundLargestFirst) {
   const hires::test_support::TemporaryFolder folder;
   const auto open = [&](const std::vector<std::pair<std::string, double>>& boards) {

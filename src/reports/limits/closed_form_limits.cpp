@@ -4,8 +4,11 @@
 #include <cmath>
 #include <limits>
 #include <utility>
+#include <variant>
+#include <vector>
 
 #include "hires/base/error.h"
+#include "hires/geometry/shape.h"
 #include "hires/imagination/start_state.h"
 #include "hires/navigation/standing_load.h"
 #include "hires/physics/closed_forms.h"
@@ -34,6 +37,25 @@ void RefuseIdleController(const robot::Robot& robot) {
   }
 }
 
+/// Whether it stands on one round shape alone, a ball or a can that lies: no acceleration is so
+/// small that it stays.
+bool Rolls(const world::ObjectModel& model) {
+  constexpr double kTouches = 0.001, kLies = 0.1;  // [m], of the axis' height
+  std::vector<const geometry::Collision*> lowest;
+  double height = kInfinity;
+  for (const geometry::Collision& shape : model.collisions) {
+    const double bottom = geometry::BoundsOf(shape.shape, shape.X_BS).lower.z();
+    if (bottom < height - kTouches) lowest.clear();
+    if (bottom <= height + kTouches) lowest.push_back(&shape);
+    height = std::min(height, bottom);
+  }
+  if (lowest.size() != 1) return false;
+  const geometry::Collision& round = *lowest.front();
+  const Eigen::Vector3d axis = round.X_BS.rotation * Eigen::Vector3d::UnitZ();
+  return std::holds_alternative<geometry::Sphere>(round.shape) ||
+         (std::holds_alternative<geometry::Cylinder>(round.shape) && std::abs(axis.z()) < kLies);
+}
+
 /// What stands on the tray of a base that follows exactly.
 class CarriedLoad {
  public:
@@ -42,7 +64,8 @@ class CarriedLoad {
         turning_arm_(TurningArm(setup.scene->X_BO.translation.head<2>(), controller_)),
         gravity_(setup.scene->world.gravity),
         body_(setup.scene->world.RequireModel(setup.ModelOf(object))->mass_properties),
-        load_(navigation::LoadOf(*setup.scene->world.RequireModel(setup.ModelOf(object)))) {}
+        load_(navigation::LoadOf(*setup.scene->world.RequireModel(setup.ModelOf(object)))),
+        rolls_(Rolls(*setup.scene->world.RequireModel(setup.ModelOf(object)))) {}
 
   /// The controller's time-out stops the base.
   MotionBounds Speed() const {
@@ -98,8 +121,10 @@ class CarriedLoad {
 
   double Tips() const { return navigation::TippingAcceleration(load_, gravity_); }
   double Slides() const { return navigation::SlidingAcceleration(load_, gravity_); }
-  double Bears() const { return std::min(Tips(), Slides()); }
-  std::string HowItGives() const { return Tips() < Slides() ? "tips" : "slides"; }
+  double Bears() const { return rolls_ ? 0.0 : std::min(Tips(), Slides()); }
+  std::string HowItGives() const {
+    return rolls_ ? "rolls" : Tips() < Slides() ? "tips" : "slides";
+  }
 
   /// [m/s^2] The hardest: each axis has a ramp of its own.
   double OwnStop() const {
@@ -109,11 +134,13 @@ class CarriedLoad {
 
   /// Of what it stands on when wheels lock; infinite where it slides before it topples.
   double SuddenStopSpeed() const {
+    if (rolls_) return 0.0;
     if (Slides() < Tips()) return kInfinity;
     const double gyration = std::min(body_.I_BBcm(0, 0), body_.I_BBcm(1, 1)) / body_.mass;
     return physics::SuddenStopTopplingSpeed(load_.support, load_.com_height, gyration, gravity_);
   }
   std::string HowItBearsASuddenStop() const {
+    if (rolls_) return "rolls";
     const std::string how =
         Slides() < Tips() ? "slides where wheels lock" : "topples where wheels lock";
     if (!controller_.casters) return how;
@@ -127,6 +154,7 @@ class CarriedLoad {
   const double gravity_;      // [m/s^2]
   const geometry::MassProperties body_;
   const navigation::StandingLoad load_;
+  const bool rolls_;
 };
 
 }  // namespace
