@@ -14,16 +14,16 @@ namespace {
 using ::testing::HasSubstr;
 using ::testing::Optional;
 
-ProcessOptions Shell(const std::string& script) {
-  ProcessOptions options;
+base::ProcessOptions Shell(const std::string& script) {
+  base::ProcessOptions options;
   options.command = {"/bin/sh", "-c", script};
   return options;
 }
 
 template <typename Condition>
 bool SoonTrue(const Condition& is_true) {
-  const double give_up = SteadyNow() + 10.0;
-  while (!is_true() && SteadyNow() < give_up) {
+  const double give_up = base::SteadyNow() + 10.0;
+  while (!is_true() && base::SteadyNow() < give_up) {
   }
   return is_true();
 }
@@ -47,14 +47,14 @@ class BreakdownWatchTest : public ::testing::Test {
   }
   static int PidOf(const std::string& name) { return Find(Descendants(), name)->pid; }
 
-  ChildProcess system_;
+  base::ChildProcess system_;
 };
 
 TEST(DescendantsTest, ProcessesMayComeAndGoMeanwhile) {
-  const ChildProcess busy(Shell("while :; do /bin/true & /bin/true & wait; done"));
-  const double end = SteadyNow() + 0.5;
+  const base::ChildProcess busy(Shell("while :; do /bin/true & /bin/true & wait; done"));
+  const double end = base::SteadyNow() + 0.5;
   std::size_t most = 0;
-  while (SteadyNow() < end) most = std::max(most, Descendants().size());
+  while (base::SteadyNow() < end) most = std::max(most, Descendants().size());
   EXPECT_GT(most, 1u) << "none of them was ever seen";
 }
 
@@ -74,8 +74,8 @@ TEST_F(BreakdownWatchTest, AKilledNodeIsNamed) {
 
 TEST_F(BreakdownWatchTest, ANodeThatComesLaterIsWatchedAndAnyOtherProgramIsNot) {
   BreakdownWatch watch(1.0);
-  const ChildProcess other(Shell("sleep 0.01"));
-  const ChildProcess node(Shell("/bin/sh -c 'read x; :' sh __name:=late < /dev/zero; :"));
+  const base::ChildProcess other(Shell("sleep 0.01"));
+  const base::ChildProcess node(Shell("/bin/sh -c 'read x; :' sh __name:=late < /dev/zero; :"));
   ASSERT_TRUE(SoonTrue([&] {
     EXPECT_EQ(watch.Broken(0.0), std::nullopt);
     return Find(Descendants(), "late") != nullptr;

@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "lab/src/ladder/ladder.h"
+#include "lab/src/interval_json.h"
 #include "reports/text/known_number.h"
 #include "reports/text/report_table.h"
 

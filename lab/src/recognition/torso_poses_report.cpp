@@ -5,6 +5,7 @@
 
 #include "lab/src/recognition/torso_poses.h"
 #include "lab/src/statistics.h"
+#include "lab/src/interval_json.h"
 #include "reports/text/known_number.h"
 #include "reports/text/report_table.h"
 
