@@ -296,6 +296,30 @@ TEST_F(ObjectModelTest, AnInertiaThatNoSuchBodyHasBecomesTheSolidsAndIsSaid) {
   }
 }
 
+TEST_F(ObjectModelTest, AMassWithoutInertiaTakesTheSolidsAndSaysSo) {
+  const Eigen::Matrix3d solid = geometry::SolidInertia(geometry::Cylinder{0.02, 0.24}, 0.3);
+  const auto without_inertia = [](std::string text, const std::string& end) {
+    const std::size_t at = text.find("<inertia "),
+                      from = at < text.size() ? at : text.find("<inertia>");
+    return text.erase(from, text.find(end, from) + end.size() - from);
+  };
+  const std::string sdf = without_inertia(TallSdf("1", "1"), "</inertia>");
+  for (const std::string& path :
+       {folder_.Write("tall.urdf", without_inertia(TallUrdf("1", "1"), "/>")),
+        folder_.Write("tall.sdf", ModelFile(sdf))}) {
+    const ObjectModel tall = LoadObjectModel(path);
+    EXPECT_TRUE(tall.mass_properties.I_BBcm.isApprox(solid, 1e-9)) << path;
+    EXPECT_EQ(tall.mass_properties.mass, 0.3);
+    EXPECT_EQ(tall.mass_properties.p_BBcm, Eigen::Vector3d(0, 0, 0.12));
+    EXPECT_THAT(
+        tall.notes,
+        ElementsAre(HasSubstr("without <inertia>: that of a solid of its shapes is taken, 6e-05")));
+  }
+  std::string none = sdf;
+  none.replace(none.find("<mass>0.3"), 9, "<mass>0");
+  EXPECT_THAT(ErrorOf("none.sdf", ModelFile(none)), HasSubstr("mass"));
+}
+
 TEST_F(ObjectModelTest, AnInertiaThatABodyMayHaveStaysToTheBit) {
   for (const std::string right : {"0.00147", "0.0005", "0.004"}) {
     const ObjectModel urdf = LoadObjectModel(folder_.Write("tall.urdf", TallUrdf(right, "0.0001")));
