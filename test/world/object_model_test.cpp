@@ -235,6 +235,23 @@ TEST_F(ObjectModelTest, AMeshThatIsHardlyInMetresIsANoteOfItsObject) {
                                                  HasSubstr("<scale>0.06 0.06 0.24</scale>"))));
 }
 
+TEST_F(ObjectModelTest, AMissingMeshIsNoOtherKindOfFile) {
+  const auto error_of = [&](const std::string& ending, const std::string& mesh) {
+    return ending == ".sdf" ? ErrorOf("cup.sdf", WithShape(MeshShape(mesh)))
+                            : ErrorOf("cup.urdf", CanUrdf("<collision><geometry><mesh filename='" +
+                                                          mesh + "'/></geometry></collision>"));
+  };
+  for (const char* ending : {".sdf", ".urdf"}) {
+    for (const char* mesh : {"cup.stl", "cup.obj", "cup.dae", "cups.stl"}) {
+      EXPECT_THAT(error_of(ending, mesh),
+                  AllOf(HasSubstr("is not there"), testing::Not(HasSubstr("did you mean"))))
+          << ending << mesh;
+    }
+  }
+  folder_.Write("cap.stl", "");
+  EXPECT_THAT(error_of(".sdf", "cup.stl"), HasSubstr("did you mean '" + folder_.path("cap.stl")));
+}
+
 TEST_F(ObjectModelTest, RefusesUrdfThatIsNoObject) {
   const auto error_of = [&](const std::string& text) { return ErrorOf("a.urdf", text); };
   EXPECT_THAT(error_of("<robot name='a'><link name='b'>"), HasSubstr("a.urdf:1"));
