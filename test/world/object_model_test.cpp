@@ -107,6 +107,20 @@ TEST_F(ObjectModelTest, RefusesMeshesItCannotRead) {
               HasSubstr("submesh 'lid' is unknown"));
 }
 
+TEST_F(ObjectModelTest, AFolderIsTheModelSdfInIt) {
+  folder_.Write("thing/meshes/cube.obj", kCubeObj);
+  const std::string file =
+      folder_.Write("thing/model.sdf", WithShape(MeshShape("meshes/cube.obj")));
+  for (const char* folder : {"thing", "thing/", "./thing"}) {
+    EXPECT_EQ(ObjectNameIn(folder_.path(folder)), "thing");
+    EXPECT_EQ(FindObjectModel(folder_.path(folder), "").collisions.size(),
+              LoadObjectModel(file).collisions.size());
+  }
+  folder_.Write("empty/model.config", "");
+  EXPECT_THAT(MessageOf<base::ConfigError>([&] { LoadObjectModel(folder_.path("empty")); }),
+              HasSubstr("a folder with a model.sdf"));
+}
+
 TEST_F(ObjectModelTest, RefusesSdfThatIsNoObject) {
   EXPECT_THAT(ErrorOf("a.sdf", WorldText("")), HasSubstr("no <model>"));
   EXPECT_THAT(ErrorOf("a.sdf", ModelFile(StaticModel("wall", LinkWithShape(kUnitBox)))),
