@@ -156,6 +156,20 @@ TEST_F(ObjectModelTest, AllNumbersThatAPlainObjectLacksAreNamedAtOnce) {
   EXPECT_THAT(ErrorOf("b.yaml", "{depth: 1.0}"), HasSubstr("shape, height, mass are missing"));
 }
 
+TEST_F(ObjectModelTest, SizesAsOthersCallThemAreToldByTheirNamesHere) {
+  const std::vector<std::tuple<std::string, std::string, std::string>> cases{
+      {"cylinder, height: 0.2", "diameter", "'radius', half of it"},
+      {"cylinder, radius: 0.04", "length", "'height'"},
+      {"cylinder, radius: 0.04, height: 0.2", "length", "'height'"},
+      {"box, width: 0.1, height: 0.2", "length", "'depth'"},
+      {"box, height: 0.2", "diameter", "'depth' and 'width'"}};
+  for (const auto& [shape, key, wanted] : cases) {
+    EXPECT_THAT(
+        ErrorOf("b.yaml", "{shape: " + shape + ", mass: 1, " + key + ": 0.08}"),
+        AllOf(HasSubstr("b.yaml: " + key + " is '0.08', wanted " + wanted), HasSubstr("line 1")));
+  }
+}
+
 TEST_F(ObjectModelTest, RefusesPlainObjectsThatAreNone) {
   const auto error_of = [&](const std::string& more) {
     return ErrorOf("b.yaml", "{shape: cylinder, height: 0.2, mass: 0.5, " + more + "}");
