@@ -239,12 +239,13 @@ std::vector<double> ParamReader::GetNumbers(const std::string& key, std::size_t 
   return numbers;
 }
 
-std::vector<std::string> ParamReader::GetStrings(const std::string& key) {
+std::vector<std::string> ParamReader::GetStrings(const std::string& key,
+                                                 const std::string& wanted) {
   const YAML::Node list = map_->Require(key);
-  if (!list.IsSequence()) Fail(key, "wanted a list of text");
+  if (!list.IsSequence()) Fail(key, "wanted " + wanted);
   std::vector<std::string> strings;
   for (const YAML::Node& item : list) {
-    if (!item.IsScalar()) Fail(key, "wanted a list of text");
+    if (!item.IsScalar()) Fail(key, "wanted " + wanted);
     strings.push_back(item.Scalar());
   }
   return strings;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <utility>
 
 #include "hires/base/check.h"
@@ -9,6 +10,7 @@
 
 namespace hires::simulation {
 
+using Eigen::Vector3d;
 using geometry::Pose3;
 
 LooseObjects::LooseObjects(const world::World& world, const Variation& variation,
@@ -32,7 +34,45 @@ void LooseObjects::AddLoose(const world::ObjectState& object, const Pose3& X_BO,
                          Varied(model.collisions, variation_), {object.X_MO, object.V_MO});
 }
 
+void LooseObjects::TakeOut(const Pose3& X_MB) {
+  constexpr double kGentle = 0.2;   // [m/s] at which physics may push apart what stands in another
+  constexpr int kMostRounds = 100;  // each frees one more of a stack
+  const physics::PhysicsParams& params = physics_->params();
+  const double deepest = params.surface_layer + kGentle * params.time_step / params.erp;
+  for (int round = 0; round < kMostRounds; ++round) {
+    std::map<int, Vector3d> ways_M;
+    for (const physics::Touch& touch : physics_->FindTouches()) {
+      if (touch.depth <= deepest) continue;
+      const auto object = Free(touch.loose), other = Free(touch.other);
+      const bool is_other = other && (!object || touch.normal.z() < 0.0);  // the upper one
+      if (!object && !is_other) continue;
+      Vector3d& way_M =
+          ways_M.try_emplace(is_other ? *other : *object, Vector3d::Zero()).first->second;
+      if (touch.depth > way_M.norm())
+        way_M = (is_other ? -touch.depth : touch.depth) * touch.normal;
+    }
+    if (ways_M.empty()) return;
+    for (const auto& [object, way_M] : ways_M) {
+      objects_[object].X_MO.translation += way_M;
+      X_BO_start_[object].translation += X_MB.rotation.inverse() * way_M;
+      physics_->SetState(bodies_[object], {objects_[object].X_MO, objects_[object].V_MO});
+    }
+  }
+}
+
 const world::ObjectModel& LooseObjects::ModelOf(int object) const { return *models_.at(object); }
+
+std::optional<int> LooseObjects::WithBody(physics::BodyId body) const {
+  for (int i = 0; i < size(); ++i) {
+    if (IsLoose(i) && bodies_[i] == body) return i;
+  }
+  return std::nullopt;
+}
+
+std::optional<int> LooseObjects::Free(physics::BodyId body) const {
+  const std::optional<int> object = WithBody(body);
+  return object && !physics_->IsHeld(body) ? object : std::nullopt;
+}
 
 Pose3 LooseObjects::PoseOf(int object, const Pose3& X_MB) const {
   if (bodies_[object] < 0) return X_MB * X_BO_start_[object];

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -24,6 +25,9 @@ class LooseObjects {
   void AddLoose(const world::ObjectState& object, const geometry::Pose3& X_BO, bool is_carried);
   /// One that moves with the base whatever happens. @param object  with the link that holds it.
   void AddRigid(const world::ObjectState& object, const geometry::Pose3& X_BO);
+  /// What starts so deep in something that it would be thrown out is put onto its surface, and in a
+  /// stack all that stands on it.  @param X_MB  the base now.
+  void TakeOut(const geometry::Pose3& X_MB);
 
   int size() const { return static_cast<int>(objects_.size()); }
   const std::vector<std::string>& names() const { return names_; }
@@ -32,6 +36,7 @@ class LooseObjects {
   const world::ObjectModel& ModelOf(int object) const;
   bool IsLoose(int object) const { return bodies_.at(object) >= 0; }
   physics::BodyId BodyOf(int object) const { return bodies_[object]; }  ///< @pre IsLoose(object)
+  std::optional<int> WithBody(physics::BodyId body) const;
 
   /// @param X_MB  the base now.
   geometry::Pose3 PoseOf(int object, const geometry::Pose3& X_MB) const;
@@ -45,6 +50,8 @@ class LooseObjects {
   std::vector<geometry::Collision> RigidShapes_B() const;  ///< named by their objects
 
  private:
+  std::optional<int> Free(physics::BodyId body) const;  // an object that nothing holds
+
   const world::World& world_;
   Variation variation_;
   physics::PhysicsWorld* physics_;

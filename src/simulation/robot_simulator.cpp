@@ -168,11 +168,9 @@ std::string RobotSimulator::HolderOf(int object) const {
 std::optional<int> RobotSimulator::broken_object() const {
   const std::optional<physics::BodyId> body = physics_->broken();
   if (!body) return std::nullopt;
-  for (int i = 0; i < objects_->size(); ++i) {
-    if (objects_->IsLoose(i) && objects_->BodyOf(i) == *body) return i;
-  }
-  HIRES_CHECK(false, "what broke is no object");
-  return std::nullopt;
+  const std::optional<int> object = objects_->WithBody(*body);
+  HIRES_CHECK(object, "what broke is no object");
+  return object;
 }
 
 bool RobotSimulator::IsTouched(int object) const {

@@ -57,6 +57,7 @@ RobotSimulator::RobotSimulator(std::shared_ptr<const Scene> scene, const Variati
     if (scene_->has_camera()) AddCamera(rng.Fork(5));
   }
   RefuseBadStart();
+  objects_->TakeOut(X_MB());
 }
 
 void RobotSimulator::AddObjects(const std::vector<world::ObjectState>& objects,

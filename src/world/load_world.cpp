@@ -421,12 +421,16 @@ ObjectModel ReadObject(const std::string& path, LoadNotes* notes) {
   if (ending == ".urdf") return LoadUrdfObject(path, finder, notes);
   if (ending == ".sdf") return LoadSdfObject(path, finder, notes);
   if (ending == ".yaml") return LoadPlainObject(path);
-  throw base::ConfigError(
-      fmt::format("{}: an object file ends in .sdf, .urdf or .yaml; rename or convert it", path));
+  throw base::ConfigError(fmt::format(
+      "{}: an object file ends in .sdf, .urdf or .yaml, or is a folder with a model.sdf; "
+      "rename or convert it",
+      path));
 }
 
+/// @param path  a file, or a model's folder as Gazebo has it.
 ObjectModel LoadObjectOf(const std::string& path, LoadNotes* notes) {
-  ObjectModel object = ReadObject(path, notes);
+  const std::filesystem::path in_folder = std::filesystem::path(path) / "model.sdf";
+  ObjectModel object = ReadObject(base::Exists(in_folder) ? in_folder.string() : path, notes);
   const std::string plain = PlainName(object.name);
   if (plain == object.name) return object;
   notes->Add("object",

@@ -20,16 +20,16 @@ std::string SizeText(const Eigen::Vector3d& size) {
 
 }  // namespace
 
-std::string MendInertia(ObjectModel* object) {
+std::string MendInertia(bool is_said, ObjectModel* object) {
   geometry::MassProperties& mass = object->mass_properties;
-  const std::string why = geometry::WhyImplausible(mass, object->collisions);
-  if (why.empty()) return "";
+  const std::string why = is_said ? geometry::WhyImplausible(mass, object->collisions) : "";
+  if (is_said && why.empty()) return "";
   mass.I_BBcm = geometry::SolidOf(object->collisions, mass.mass).I_BBcm;
   const Eigen::Vector3d taken = geometry::PrincipalMoments(mass);
   return fmt::format(
-      "whose <inertia> no such body has ({}): that of a solid of its shapes is taken, {:.3g}, "
-      "{:.3g}, {:.3g} kg m^2",
-      why, taken[0], taken[1], taken[2]);
+      "{}: that of a solid of its shapes is taken, {:.3g}, {:.3g}, {:.3g} kg m^2",
+      is_said ? fmt::format("whose <inertia> no such body has ({})", why) : "without <inertia>",
+      taken[0], taken[1], taken[2]);
 }
 
 std::vector<std::string> DoubtsOfMass(const ObjectModel& object) {

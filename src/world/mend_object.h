@@ -9,9 +9,10 @@ namespace hires::world {
 
 /// Gives an object whose inertia no body of its mass and shapes has (geometry::WhyImplausible), as
 /// of a placeholder or of other units, that of the solid of its shapes.
+/// @param is_said  whether its file says one.
 /// @return what came and what was taken, for LoadNotes behind "model" or "link"; "" if it stays.
 /// @pre it has shapes, and geometry::WhyUnphysical says nothing.
-std::string MendInertia(ObjectModel* object);
+std::string MendInertia(bool is_said, ObjectModel* object);
 
 /// What suggests that a file means other units, or another place of its mass: more mass than any
 /// matter has in the box round its shapes, a centre of mass outside of that box. It stays as it is.

@@ -8,7 +8,23 @@
 #include "world/solid_object.h"
 
 namespace hires::world {
+namespace {
+
 using base::Between;
+
+/// Of sizes as others call them, what they are here.
+void RefuseOtherSizes(const base::ParamReader& in, bool is_round) {
+  if (in.Has("diameter")) {
+    in.Fail("diameter",
+            is_round ? "wanted 'radius', half of it" : "wanted 'depth' and 'width' of a box");
+  }
+  if (in.Has("length")) {
+    in.Fail("length", is_round ? "wanted 'height', how long it is along its axis"
+                               : "wanted 'depth', how long it is along x");
+  }
+}
+
+}  // namespace
 
 ObjectModel LoadPlainObject(const std::string& path) {
   base::ParamReader in = base::ParamReader::FromFile(path);
@@ -16,6 +32,7 @@ ObjectModel LoadPlainObject(const std::string& path) {
   std::vector<std::string> needed{"shape", "height", "mass"};
   if (in.Has("shape")) {
     const bool is_round = in.Get("shape", base::OneOf({"cylinder", "box"})) == "cylinder";
+    RefuseOtherSizes(in, is_round);
     const std::vector<std::string> sizes =
         is_round ? std::vector<std::string>{"radius"} : std::vector<std::string>{"depth", "width"};
     needed.insert(needed.end(), sizes.begin(), sizes.end());

@@ -222,7 +222,13 @@ struct Obstacle {
   std::string made;  ///< what is made of it
 };
 
-Obstacle WhyStill(const ModelLinks& model, Hold hold) {
+/// Its mass is said, and its inertia to be that of its shapes.
+bool LacksInertia(const PlacedLink& link) {
+  return HasShape(*link.link) && HasMassAlone(*link.link) && !HasAutomaticInertia(*link.link);
+}
+
+/// @param is_object  it is meant to move: a mass alone will do.
+Obstacle WhyStill(const ModelLinks& model, Hold hold, bool is_object) {
   if (model.has_moving_joint || hold == Hold::kJoint)
     return {"with joints", "stands still where it is at joint zero, as an obstacle"};
   std::set<int> groups;
@@ -239,6 +245,7 @@ Obstacle WhyStill(const ModelLinks& model, Hold hold) {
     return {"with an <ellipsoid>, which physics plays still only", kStill};
   for (const PlacedLink& link : model.links) {
     if (!HasShape(*link.link) || HasWholeInertial(*link.link)) continue;
+    if (is_object && LacksInertia(link)) continue;
     if (HasAutomaticInertia(*link.link)) {
       if (AutomaticMassOf(*link.link, link.X_ML)) continue;
       return {
@@ -264,7 +271,7 @@ geometry::MassProperties MassOf(const ModelLinks& model) {
                                : std::nullopt;  // what is written beside it is not meant, then
     if (automatic) {
       parts.push_back(*automatic);
-    } else if (HasWholeInertial(*link.link)) {
+    } else if (HasWholeInertial(*link.link) || LacksInertia(link)) {
       parts.push_back(MassPropertiesOf(*link.link, link.X_ML));
     }
   }
@@ -275,7 +282,8 @@ geometry::MassProperties MassOf(const ModelLinks& model) {
 ObjectModel ObjectOf(const sdf::Model& model, const ModelLinks& links,
                      std::vector<geometry::Collision> shapes, LoadNotes* notes) {
   ObjectModel object{model.Name(), MassOf(links), std::move(shapes)};
-  const std::string mended = object.collisions.empty() ? "" : MendInertia(&object);
+  const bool is_said = std::none_of(links.links.begin(), links.links.end(), LacksInertia);
+  const std::string mended = object.collisions.empty() ? "" : MendInertia(is_said, &object);
   if (!mended.empty()) notes->Add("model", mended, NotePlace(model));
   return object;
 }
@@ -385,7 +393,7 @@ PlayedModel PlayedModelOf(const sdf::Model& model, const geometry::Pose3& X_MB, 
   }
   played.shapes = ShapesOf(links, X_MB, reading);
   if (is_still) return played;
-  const Obstacle obstacle = WhyStill(links, hold);
+  const Obstacle obstacle = WhyStill(links, hold, false);
   if (!obstacle.kind.empty()) {
     note(obstacle.kind + ": " + obstacle.made);
     return played;
@@ -407,7 +415,7 @@ ObjectModel LooseObjectOf(const sdf::Model& model, const ModelReading& reading) 
     throw base::ConfigError(
         where + ": can move but has no <collision>, so it would fall through the floor; add one");
   }
-  const Obstacle obstacle = WhyStill(links, Hold::kNone);
+  const Obstacle obstacle = WhyStill(links, Hold::kNone, true);
   if (!obstacle.kind.empty()) {
     throw base::ConfigError(
         fmt::format("{}: is no object, as it is a model {}; an object is one body with mass, "

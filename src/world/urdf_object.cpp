@@ -20,6 +20,31 @@
 namespace hires::world {
 namespace {
 
+/// urdfdom refuses a mass without <inertia>: it gets one of no meaning.
+/// @return whether nothing lacked.
+bool AddInertia(std::string* text) {
+  tinyxml2::XMLDocument document;
+  document.Parse(text->data(), text->size());
+  bool is_said = true;
+  tinyxml2::XMLElement* robot = document.RootElement();
+  if (robot == nullptr) return true;  // of which others tell
+  for (tinyxml2::XMLElement* link = robot->FirstChildElement("link"); link != nullptr;
+       link = link->NextSiblingElement("link")) {
+    tinyxml2::XMLElement* inertial = link->FirstChildElement("inertial");
+    if (inertial == nullptr || inertial->FirstChildElement("mass") == nullptr) continue;
+    if (inertial->FirstChildElement("inertia") != nullptr) continue;
+    is_said = false;
+    auto* inertia = inertial->InsertNewChildElement("inertia");
+    for (const char* moment : {"ixx", "iyy", "izz"}) inertia->SetAttribute(moment, 1.0);
+    for (const char* product : {"ixy", "ixz", "iyz"}) inertia->SetAttribute(product, 0.0);
+  }
+  if (is_said) return true;
+  tinyxml2::XMLPrinter printer;
+  document.Print(&printer);
+  *text = printer.CStr();
+  return false;
+}
+
 urdf::ModelInterfaceSharedPtr Parse(const std::string& text, const std::string& path) {
   const ConsoleBridgeCapture console;
   std::string thrown;
@@ -149,7 +174,9 @@ ObjectModel LoadUrdfObject(const std::string& path, const ResourceFinder& finder
   const XmlLimits limits;
   const std::string text = base::PlainXml(base::ReadTextFile(path, limits.max_file_bytes), path);
   CheckXml(text, path, limits);
-  const urdf::ModelInterfaceSharedPtr model = Parse(text, path);
+  std::string whole = text;
+  const bool says_inertia = AddInertia(&whole);
+  const urdf::ModelInterfaceSharedPtr model = Parse(whole, path);
   if (model->links_.size() != 1) {
     throw base::ConfigError(
         fmt::format("{}: robot '{}' has {} links; an object is one link without joints: merge them",
@@ -166,7 +193,7 @@ ObjectModel LoadUrdfObject(const std::string& path, const ResourceFinder& finder
     throw base::ConfigError(where +
                             ": has no <collision>, so it would fall through the floor; add one");
   }
-  const std::string mended = MendInertia(&object);
+  const std::string mended = MendInertia(says_inertia, &object);
   if (!mended.empty()) notes->Add("link", mended, fmt::format("{} '{}'", path, link.name));
   return object;
 }

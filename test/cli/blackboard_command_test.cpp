@@ -212,6 +212,9 @@ TEST_F(BlackboardCommandTest, WrongWordsEndWithOne) {
   const Ended property = OnStore({"query", "--property", "=3"});
   EXPECT_EQ(property.code, 1);
   EXPECT_THAT(property.err, HasSubstr("no role"));
+  const Ended value = OnStore({"query", "--property", "hasX=abc"});
+  EXPECT_EQ(value.code, 1);
+  EXPECT_THAT(value.err, HasSubstr("the text 'abc'; wanted a number"));
   EXPECT_THAT(OnStore({"query", "--class", "Mugg"}).err, HasSubstr("'Mug'"));
 }
 

@@ -466,6 +466,21 @@ TEST(CommandLineTest, ARolloutThatNoAnswerHasIsRefusedBeforeAnythingIsPlayed) {
   ExpectRefused(with("worst", {"--beside", "median@2"}), {"--beside median@2: rank 2 of 1"});
 }
 
+TEST(CommandLineTest, APictureWhoseFileEndsLikeAnotherFormatIsRefusedWithTheEndingWanted) {
+  const auto with = [](const std::string& option, const std::string& file) {
+    return Small().Imagine(kDrive +
+                           std::vector<std::string>{"--save-rollout", "worst", option, file});
+  };
+  for (const auto& [option, ending] : {std::pair("--gif", ".gif"), std::pair("--strip", ".png")}) {
+    for (const std::string other : {".jpg", ".gif", ".PNG", ".mp4", ".txt"}) {
+      if (base::ToLower(other) == ending) continue;
+      ExpectRefused(with(option, "w" + other),
+                    {std::string(option) + " w" + other, std::string("wanted ") + ending,
+                     std::string("give it w") + ending});
+    }
+  }
+}
+
 TEST(CommandLineTest, RefusesAreasThatAreNone) {
   const auto with = [](const std::vector<std::string>& more) {
     return Small().Imagine(kDrive + more);

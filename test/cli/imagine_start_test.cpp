@@ -136,6 +136,23 @@ TEST(RequireObjectsTest, WhatAnActionIsAboutMustBeSomewhere) {
   }
 }
 
+TEST(RequirePosturesTest, OfARobotThatIsABaseAloneNoneIsPassedOver) {
+  robot::Robot robot = hires::test_support::TrayRobot();
+  const auto why_not = [&](const std::vector<std::string>& postures) {
+    StartOptions options = AtDoor();
+    options.postures = postures;
+    const ImagineStart start = ReadStart(options, "move_base", actions::OwnActions());
+    return ConfigErrorOf([&] { RequirePostures(start, robot); });
+  };
+  for (const char* posture : {"torso1:TorsoUpPosture", "rightArm1:ArmCarryPosture"}) {
+    EXPECT_THAT(why_not({posture}),
+                AllOf(HasSubstr("--posture "), HasSubstr("'tray_robot' has a base alone")));
+  }
+  EXPECT_EQ(why_not({}), "(no ConfigError was thrown)");
+  robot.profile.upper_body.emplace();
+  EXPECT_EQ(why_not({"torso1:TorsoUpPosture"}), "(no ConfigError was thrown)");
+}
+
 /// A hall with a table of 0.75 m that stands on its plate alone, as furniture of plates does.
 world::World HallWithTable() {
   world::World hall;

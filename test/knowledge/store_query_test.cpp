@@ -3,6 +3,7 @@
 
 #include <cmath>
 #include <functional>
+#include <tuple>
 
 #include "hires/base/error.h"
 #include "hires/knowledge/store.h"
@@ -22,6 +23,7 @@ using test_support::PoseAt;
 using test_support::QueryAll;
 using test_support::SmallOntology;
 using Reach = FluentQuery::ConceptFilter::Reach;
+using ::testing::AllOf;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
@@ -96,8 +98,28 @@ TEST_F(StoreQueryTest, PropertiesByRoleAndFiller) {
   EXPECT_THAT(Names(QueryAll(store_, query)), ElementsAre("on1"));
   query.properties = {{"hasX", Filler(std::int64_t{4})}};
   EXPECT_THAT(Names(QueryAll(store_, query)), ElementsAre("poseMug1"));
-  query.properties = {{"hasX", Filler(true)}};
-  EXPECT_THAT(QueryAll(store_, query), IsEmpty());
+}
+
+TEST_F(StoreQueryTest, AValueThatTheRelationCannotHaveIsRefusedWithWhatItWants) {
+  const Filler text(std::string("abc")), truth(true), whole(std::int64_t{3}), real(2.5);
+  const std::vector<std::tuple<std::string, std::vector<Filler>, std::vector<Filler>, std::string>>
+      relations{{"hasX", {whole, real}, {text, truth}, "a number"},
+                {"hasCount", {whole, Filler(3.0)}, {text, truth, real}, "a whole number"},
+                {"hasColour", {text}, {truth, whole, real}, "a text, in quotes"},
+                {"isClean", {truth}, {text, whole, real}, "true or false"},
+                {"hasPose", {text}, {truth, whole, real}, "the name of a Pose"}};
+  for (const auto& [role, good, bad, wanted] : relations) {
+    FluentQuery query;
+    for (const Filler& filler : good) {
+      query.properties = {{role, filler}};
+      EXPECT_NO_THROW(QueryAll(store_, query)) << role;
+    }
+    for (const Filler& filler : bad) {
+      query.properties = {{role, filler}};
+      EXPECT_THAT(ErrorOf(query),
+                  AllOf(HasSubstr("'" + role + "'"), HasSubstr("wanted " + wanted)));
+    }
+  }
 }
 
 TEST_F(StoreQueryTest, AllPropertiesOrOneOfThem) {

@@ -198,6 +198,12 @@ INSTANTIATE_TEST_SUITE_P(
         BadSidecar{
             "NoDuration", "    duration: [2, 9.5]\n", "", {"operators.grasp.duration is missing"}},
         BadSidecar{"OneBound", "[2, 9.5]", "[2]", {"operators.grasp.duration", "[min, max]"}},
+        BadSidecar{"NoBounds",
+                   "[2, 9.5]",
+                   "3.0",
+                   {"operators.grasp.duration is '3.0'", "wanted [min, max]"}},
+        BadSidecar{"BoundsByName", "[2, 9.5]", "{min: 2, max: 9.5}", {"wanted [min, max]"}},
+        BadSidecar{"ListInBounds", "[2, 9.5]", "[[2], 9.5]", {"wanted [min, max]"}},
         BadSidecar{"NoNumber", "[2, 9.5]", "[2, soon]", {"'soon' is no bound", ".inf"}},
         BadSidecar{"NotANumber", "[2, 9.5]", "[.nan, 9.5]", {"'.nan' is no bound"}},
         BadSidecar{"NegativeBound", "[2, 9.5]", "[-2, 9.5]", {"'-2' is no bound", "0 or more"}},

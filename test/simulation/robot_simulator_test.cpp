@@ -5,6 +5,7 @@
 
 #include <cmath>
 #include <limits>
+#include <string>
 #include <thread>
 #include <vector>
 
@@ -19,6 +20,7 @@ using geometry::Pose2;
 using test_support::AddModel;
 using test_support::Block;
 using test_support::ConfigErrorOf;
+using test_support::kTrayTop;
 using test_support::Mill;
 using test_support::OnTray;
 using test_support::Room;
@@ -588,6 +590,57 @@ TEST(RobotSimulatorTest, RefusesObjectsInsideOtherThings) {
   EXPECT_THAT(WhyRefused(With({in_robot}), kMiddle),
               AllOf(HasSubstr("object 'mill1' starts inside the robot, 0."),
                     HasSubstr("m deep in '"), HasSubstr("give the height of what it stands on")));
+}
+
+/// A mill, or a box as large.
+world::World RoomWith(bool is_box) {
+  world::World room = Room();
+  room.statics.push_back(Block("table", {0.8, 0.8, 0.02}, {1.0, 1.0, 0.74}));
+  world::ObjectModel thing = Mill("thing", 0.1, 0.05);
+  if (is_box) {
+    const geometry::Box box{{0.1, 0.1, 0.1}};
+    thing.collisions.front().shape = box;
+    thing.mass_properties.I_BBcm = geometry::SolidInertia(box, thing.mass_properties.mass);
+  }
+  AddModel(&room, thing);
+  return room;
+}
+
+/// What starts `depth` [m] deep in what it stands on: the floor, a table, the tray, one another.
+std::vector<world::ObjectState> Sunk(double depth) {
+  std::vector<world::ObjectState> objects(5, OnTray("on_tray", "thing", kMiddle));
+  objects[0].X_MO.translation.z() = kTrayTop - depth;
+  for (int i = 1; i < 5; ++i) {
+    objects[i].name = "thing" + std::to_string(i);
+    objects[i].X_MO.rotation.setIdentity();
+  }
+  objects[1].X_MO.translation = {2.0, 3.0, -depth};
+  for (int i = 2; i < 5; ++i)
+    objects[i].X_MO.translation = {1.0, 1.0, 0.75 - depth + (i - 2) * (0.1 - depth)};
+  return objects;
+}
+
+TEST(RobotSimulatorTest, WhatStartsALittleDeepInItsSupportIsTakenOutAndStays) {
+  for (const bool is_box : {false, true}) {
+    const auto scene = simulation::MakeScene(RoomWith(is_box), TrayRobot());
+    for (const double depth : {0.0, 0.0005, 0.001, 0.0015, 0.0019, 0.0021, 0.003, 0.004, 0.0044,
+                               0.0045, 0.0046, 0.0048, 0.0049, 0.00499}) {
+      const std::vector<world::ObjectState> objects = Sunk(depth);
+      RobotSimulator simulator(scene, {}, With(objects), StandingAt(kMiddle), base::Rng(1));
+      const geometry::Pose3 X_MOstart = simulator.PoseOf(0);
+      EXPECT_NEAR(X_MOstart.translation.z(), kTrayTop, depth < 0.002 ? depth + 1e-9 : 1e-6);
+      StepFor(&simulator, 0.5);
+      EXPECT_FALSE(simulator.broken_object()) << depth << " m deep, box: " << is_box;
+      for (int i = 0; i < 5; ++i) {
+        const geometry::Pose3 X_MO = simulator.PoseOf(i);
+        EXPECT_LT((X_MO.translation - objects[i].X_MO.translation).norm(), 0.02)
+            << i << ": " << depth << " m deep, box: " << is_box;
+        EXPECT_LT(geometry::TiltOf(X_MO.rotation), 0.02);
+      }
+      simulator.PutBack(0);
+      EXPECT_LT((simulator.PoseOf(0).translation - X_MOstart.translation).norm(), 1e-4);
+    }
+  }
 }
 
 TEST(RobotSimulatorTest, NamesTheOneOfSeveralObjectsThatIsInsideTheRobot) {

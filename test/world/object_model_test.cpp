@@ -107,6 +107,20 @@ TEST_F(ObjectModelTest, RefusesMeshesItCannotRead) {
               HasSubstr("submesh 'lid' is unknown"));
 }
 
+TEST_F(ObjectModelTest, AFolderIsTheModelSdfInIt) {
+  folder_.Write("thing/meshes/cube.obj", kCubeObj);
+  const std::string file =
+      folder_.Write("thing/model.sdf", WithShape(MeshShape("meshes/cube.obj")));
+  for (const char* folder : {"thing", "thing/", "./thing"}) {
+    EXPECT_EQ(ObjectNameIn(folder_.path(folder)), "thing");
+    EXPECT_EQ(FindObjectModel(folder_.path(folder), "").collisions.size(),
+              LoadObjectModel(file).collisions.size());
+  }
+  folder_.Write("empty/model.config", "");
+  EXPECT_THAT(MessageOf<base::ConfigError>([&] { LoadObjectModel(folder_.path("empty")); }),
+              HasSubstr("a folder with a model.sdf"));
+}
+
 TEST_F(ObjectModelTest, RefusesSdfThatIsNoObject) {
   EXPECT_THAT(ErrorOf("a.sdf", WorldText("")), HasSubstr("no <model>"));
   EXPECT_THAT(ErrorOf("a.sdf", ModelFile(StaticModel("wall", LinkWithShape(kUnitBox)))),
@@ -140,6 +154,20 @@ TEST_F(ObjectModelTest, AllNumbersThatAPlainObjectLacksAreNamedAtOnce) {
   EXPECT_THAT(ErrorOf("b.yaml", "{shape: cylinder}"),
               HasSubstr("height, mass, radius are missing"));
   EXPECT_THAT(ErrorOf("b.yaml", "{depth: 1.0}"), HasSubstr("shape, height, mass are missing"));
+}
+
+TEST_F(ObjectModelTest, SizesAsOthersCallThemAreToldByTheirNamesHere) {
+  const std::vector<std::tuple<std::string, std::string, std::string>> cases{
+      {"cylinder, height: 0.2", "diameter", "'radius', half of it"},
+      {"cylinder, radius: 0.04", "length", "'height'"},
+      {"cylinder, radius: 0.04, height: 0.2", "length", "'height'"},
+      {"box, width: 0.1, height: 0.2", "length", "'depth'"},
+      {"box, height: 0.2", "diameter", "'depth' and 'width'"}};
+  for (const auto& [shape, key, wanted] : cases) {
+    EXPECT_THAT(
+        ErrorOf("b.yaml", "{shape: " + shape + ", mass: 1, " + key + ": 0.08}"),
+        AllOf(HasSubstr("b.yaml: " + key + " is '0.08', wanted " + wanted), HasSubstr("line 1")));
+  }
 }
 
 TEST_F(ObjectModelTest, RefusesPlainObjectsThatAreNone) {
@@ -235,6 +263,23 @@ TEST_F(ObjectModelTest, AMeshThatIsHardlyInMetresIsANoteOfItsObject) {
                                                  HasSubstr("<scale>0.06 0.06 0.24</scale>"))));
 }
 
+TEST_F(ObjectModelTest, AMissingMeshIsNoOtherKindOfFile) {
+  const auto error_of = [&](const std::string& ending, const std::string& mesh) {
+    return ending == ".sdf" ? ErrorOf("cup.sdf", WithShape(MeshShape(mesh)))
+                            : ErrorOf("cup.urdf", CanUrdf("<collision><geometry><mesh filename='" +
+                                                          mesh + "'/></geometry></collision>"));
+  };
+  for (const char* ending : {".sdf", ".urdf"}) {
+    for (const char* mesh : {"cup.stl", "cup.obj", "cup.dae", "cups.stl"}) {
+      EXPECT_THAT(error_of(ending, mesh),
+                  AllOf(HasSubstr("is not there"), testing::Not(HasSubstr("did you mean"))))
+          << ending << mesh;
+    }
+  }
+  folder_.Write("cap.stl", "");
+  EXPECT_THAT(error_of(".sdf", "cup.stl"), HasSubstr("did you mean '" + folder_.path("cap.stl")));
+}
+
 TEST_F(ObjectModelTest, RefusesUrdfThatIsNoObject) {
   const auto error_of = [&](const std::string& text) { return ErrorOf("a.urdf", text); };
   EXPECT_THAT(error_of("<robot name='a'><link name='b'>"), HasSubstr("a.urdf:1"));
@@ -294,6 +339,30 @@ TEST_F(ObjectModelTest, AnInertiaThatNoSuchBodyHasBecomesTheSolidsAndIsSaid) {
     EXPECT_THAT(sdf.notes, says);
     EXPECT_THAT(world.notes, says);
   }
+}
+
+TEST_F(ObjectModelTest, AMassWithoutInertiaTakesTheSolidsAndSaysSo) {
+  const Eigen::Matrix3d solid = geometry::SolidInertia(geometry::Cylinder{0.02, 0.24}, 0.3);
+  const auto without_inertia = [](std::string text, const std::string& end) {
+    const std::size_t at = text.find("<inertia "),
+                      from = at < text.size() ? at : text.find("<inertia>");
+    return text.erase(from, text.find(end, from) + end.size() - from);
+  };
+  const std::string sdf = without_inertia(TallSdf("1", "1"), "</inertia>");
+  for (const std::string& path :
+       {folder_.Write("tall.urdf", without_inertia(TallUrdf("1", "1"), "/>")),
+        folder_.Write("tall.sdf", ModelFile(sdf))}) {
+    const ObjectModel tall = LoadObjectModel(path);
+    EXPECT_TRUE(tall.mass_properties.I_BBcm.isApprox(solid, 1e-9)) << path;
+    EXPECT_EQ(tall.mass_properties.mass, 0.3);
+    EXPECT_EQ(tall.mass_properties.p_BBcm, Eigen::Vector3d(0, 0, 0.12));
+    EXPECT_THAT(
+        tall.notes,
+        ElementsAre(HasSubstr("without <inertia>: that of a solid of its shapes is taken, 6e-05")));
+  }
+  std::string none = sdf;
+  none.replace(none.find("<mass>0.3"), 9, "<mass>0");
+  EXPECT_THAT(ErrorOf("none.sdf", ModelFile(none)), HasSubstr("mass"));
 }
 
 TEST_F(ObjectModelTest, AnInertiaThatABodyMayHaveStaysToTheBit) {

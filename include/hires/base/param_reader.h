@@ -37,7 +37,9 @@ class ParamReader {
   bool GetBool(const std::string& key);
   std::string GetString(const std::string& key);  ///< any text, also empty
   std::vector<double> GetNumbers(const std::string& key, std::size_t size);  ///< finite numbers
-  std::vector<std::string> GetStrings(const std::string& key);
+  /// @param wanted  for the message where it is something else.
+  std::vector<std::string> GetStrings(const std::string& key,
+                                      const std::string& wanted = "a list of text");
   /// A list of pairs of numbers, also as text that holds one ("[[1, 2], [3, 4]]"); nothing where it
   /// is something else.
   std::optional<std::vector<std::pair<double, double>>> FindPairs(const std::string& key,

@@ -39,6 +39,7 @@ enum class LevelOfDetail {
 /// One instance belongs to one thread at a time. The same calls give the same bits.
 class RobotSimulator {
  public:
+  /// What stands up to 5 mm deep in its support starts on it.
   /// @param robot_state  joints that it does not name are as in the driving posture.
   /// @throws base::ConfigError if an object's model is unknown to the world or the link that holds
   /// it to the robot, the robot or an object starts inside a static body or has a pose or velocity

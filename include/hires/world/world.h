@@ -110,11 +110,11 @@ std::string SourceOf(const std::string& name, const World& world);
 /// move, shapes that are not supported, poses that are not finite or lie more than 1 km away.
 World LoadWorld(const std::string& sdf_path, const std::vector<std::string>& model_path = {});
 
-/// Reads a single-link object from an SDF model (.sdf, model.sdf) or a URDF (.urdf), or a cylinder
-/// or box of given size and mass (.yaml: docs/command_line.md). Where its origin is not at the
-/// height of its lowest point, it is put there; its name has letters, digits and _ alone, others
-/// become _. What is played otherwise than it is written is said
-/// in ObjectModel::notes and to base::Log.
+/// Reads a single-link object from an SDF model (.sdf, or its folder) or a URDF (.urdf), or a
+/// cylinder or box of given size and mass (.yaml: docs/command_line.md). Where its origin is not at
+/// the height of its lowest point, it is put there; its name has letters, digits and _ alone,
+/// others become _. What is played otherwise than it is written is said in ObjectModel::notes and
+/// to base::Log.
 /// @throws base::ConfigError as LoadWorld, and as base::ParamReader.
 ObjectModel LoadObjectModel(const std::string& path);
 

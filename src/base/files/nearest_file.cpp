@@ -40,6 +40,19 @@ std::vector<std::string> FilesBelow(const fs::path& folder, int most_depth) {
   return files;
 }
 
+std::string EndingOf(const std::string& file) {
+  return ToLower(fs::path(file).extension().string());
+}
+
+/// A world, model or robot is no remedy for a mesh, which it may be the one to name.
+bool IsOtherKind(const std::string& file, const std::string& wanted) {
+  const auto describes = [](const std::string& ending) {
+    return ending == ".sdf" || ending == ".urdf" || ending == ".world" || ending == ".xacro";
+  };
+  const std::string its = EndingOf(file), of_wanted = EndingOf(wanted);
+  return describes(its) && !describes(of_wanted) && EditDistance(its, of_wanted) > 1;
+}
+
 std::string NearestOf(const std::vector<std::string>& files, const std::string& wanted) {
   const std::string lower = ToLower(wanted.substr(0, kMostCompared));
   const std::string name = ToLower(fs::path(wanted).filename().string());
@@ -47,6 +60,7 @@ std::string NearestOf(const std::vector<std::string>& files, const std::string& 
   // Of the same name first, then by letters that differ, then by the alphabet.
   std::tuple<bool, std::size_t, std::string> best{true, most + 1, ""};
   for (const std::string& file : files) {
+    if (IsOtherKind(file, wanted)) continue;
     const bool differs = ToLower(fs::path(file).filename().string()) != name;
     const std::size_t distance = EditDistance(lower, ToLower(file.substr(0, kMostCompared)));
     if (differs && distance > most) continue;

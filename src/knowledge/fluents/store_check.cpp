@@ -96,6 +96,29 @@ bool IsOfKind(const Filler& filler, ValueKind kind) {
   return false;
 }
 
+bool HasValues(const Ontology::Relation& relation) {
+  return relation.range.compare(0, 4, "xsd:") == 0;
+}
+
+/// Of what stands in a fluent: links are the names of others.
+ValueKind KindIn(const Ontology::Relation& relation) {
+  return HasValues(relation) ? KindOf(relation.range) : ValueKind::kText;
+}
+
+const char* WantedOf(ValueKind kind) {
+  switch (kind) {
+    case ValueKind::kNumber:
+      return "a number";
+    case ValueKind::kInteger:
+      return "a whole number";
+    case ValueKind::kTruth:
+      return "true or false";
+    case ValueKind::kText:
+      return "a text, in quotes where it looks like something else";
+  }
+  return "";
+}
+
 void CheckNumber(const std::string& where, const Property& property) {
   if (const auto* real = std::get_if<double>(&property.filler); real && !std::isfinite(*real)) {
     FailAt(where, fmt::format("is {}; wanted a finite number", *real));
@@ -241,6 +264,21 @@ std::string AsName(std::string sentence) {
   std::replace_if(sentence.begin(), sentence.end(), IsControl, ' ');
   if (sentence.size() <= kMaxNameBytes) return sentence;
   return base::Shortened(sentence, kMaxNameBytes - kOfEllipsis);
+}
+
+bool CanHave(const Ontology::Relation& relation, const Filler& filler) {
+  const ValueKind kind = KindIn(relation);
+  const auto* real = std::get_if<double>(&filler);
+  const bool is_whole = real != nullptr && *real == std::floor(*real);
+  return IsOfKind(filler, kind) || (kind == ValueKind::kInteger && is_whole);
+}
+
+void CheckFiller(const Ontology::Relation& relation, const Filler& filler) {
+  if (CanHave(relation, filler)) return;
+  const std::string wanted = HasValues(relation) ? WantedOf(KindIn(relation))
+                                                 : fmt::format("the name of a {}", relation.range);
+  throw base::ConfigError(fmt::format("property '{}' is asked for with {}; wanted {}",
+                                      relation.name, Show(filler), wanted));
 }
 
 void CheckOrder(const std::string& instance, const temporal::Bounds& start,

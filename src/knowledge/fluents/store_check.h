@@ -24,6 +24,11 @@ void CheckFluent(const Fluent& fluent, const Ontology& ontology);
 /// (ExecutionRecord and below), never of how the world is.  @throws ConfigError
 void CheckSource(Source source, const Fluent& fluent, const Ontology& ontology);
 
+/// Whether a fluent may have this value; whole numbers may be written as 2.0.
+bool CanHave(const Ontology::Relation& relation, const Filler& filler);
+/// @throws ConfigError unless it can, naming relation, what came and what was wanted.
+void CheckFiller(const Ontology::Relation& relation, const Filler& filler);
+
 /// UTF-8, not empty, at most kMaxNameBytes, no control characters.
 /// @throws ConfigError beginning with `what`.
 void CheckName(const std::string& what, const std::string& name);

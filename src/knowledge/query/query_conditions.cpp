@@ -7,6 +7,7 @@
 
 #include "hires/base/error.h"
 #include "hires/base/text.h"
+#include "knowledge/fluents/store_check.h"
 #include "knowledge/state/live_view_match.h"
 
 namespace hires::knowledge {
@@ -42,9 +43,12 @@ TimeReach ReachOfRelations(const temporal::Interval& interval,
 void RequireRelations(const std::vector<FluentQuery::PropertyFilter>& properties,
                       const Ontology& ontology) {
   for (const FluentQuery::PropertyFilter& filter : properties) {
-    if (ontology.FindRelation(filter.role) != nullptr) continue;
-    throw base::ConfigError(
-        base::UnknownName("relation", filter.role.substr(0, 60), ontology.RelationNames()));
+    const Ontology::Relation* relation = ontology.FindRelation(filter.role);
+    if (relation == nullptr) {
+      throw base::ConfigError(
+          base::UnknownName("relation", filter.role.substr(0, 60), ontology.RelationNames()));
+    }
+    if (filter.filler) CheckFiller(*relation, *filter.filler);
   }
 }
 

@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "hires/base/text.h"
+#include "knowledge/fluents/store_check.h"
 
 namespace hires::knowledge {
 namespace {
@@ -35,6 +36,8 @@ void StoreView::All(const std::function<bool(const Fluent&)>& visit) const { For
 
 void StoreView::WithFiller(const std::string& role, const Filler& filler,
                            const std::function<bool(const Fluent&)>& visit) const {
+  const Ontology::Relation* relation = store_.ontology().FindRelation(role);
+  if (relation != nullptr && !CanHave(*relation, filler)) return;  // a query would be refused
   FluentQuery query;
   query.properties = {{role, filler}};
   ForEach(std::move(query), visit);

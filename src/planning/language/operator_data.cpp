@@ -78,7 +78,7 @@ double ReadBound(const ParamReader& in, const std::string& text) {
 }
 
 Duration ReadDuration(ParamReader in) {
-  const std::vector<std::string> bounds = in.GetStrings("duration");
+  const std::vector<std::string> bounds = in.GetStrings("duration", "[min, max] in seconds");
   if (bounds.size() != 2) {
     in.Fail("duration", fmt::format("it has {} numbers, wanted [min, max]", bounds.size()));
   }

@@ -116,6 +116,11 @@ bool HasWholeInertial(const sdf::Link& link) {
   return true;
 }
 
+bool HasMassAlone(const sdf::Link& link) {
+  const sdf::ElementPtr inertial = InertialOf(link);
+  return ChildOf(inertial, "mass") != nullptr && ChildOf(inertial, "inertia") == nullptr;
+}
+
 bool HasAutomaticInertia(const sdf::Link& link) {
   const sdf::ElementPtr inertial = InertialOf(link);
   return inertial != nullptr && (Says(inertial, "auto", "true") || Says(inertial, "auto", "1"));
@@ -127,8 +132,8 @@ geometry::MassProperties MassPropertiesOf(const sdf::Link& link, const geometry:
   const sdf::ElementPtr pose = ChildOf(inertial, "pose");
   const geometry::Pose3 X_BI = X_BL * (pose == nullptr ? geometry::Pose3{} : PoseOf(pose, where));
   const char* names[3][3] = {{"ixx", "ixy", "ixz"}, {"ixy", "iyy", "iyz"}, {"ixz", "iyz", "izz"}};
-  Eigen::Matrix3d I_I;
-  for (int i = 0; i < 3; ++i) {
+  Eigen::Matrix3d I_I = Eigen::Matrix3d::Identity();
+  for (int i = 0; i < 3 && inertia != nullptr; ++i) {
     for (int k = 0; k < 3; ++k) I_I(i, k) = NumberIn(inertia, names[i][k], where);
   }
   const Eigen::Matrix3d R_BI = X_BI.rotation.toRotationMatrix();

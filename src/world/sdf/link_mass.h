@@ -13,6 +13,9 @@ namespace hires::world {
 /// which nobody has weighed.
 bool HasWholeInertial(const sdf::Link& link);
 
+/// Whether it says a mass and no <inertia> at all.
+bool HasMassAlone(const sdf::Link& link);
+
 /// Whether <inertial auto="true"> (SDF 1.11) asks for mass and inertia of shapes and densities.
 bool HasAutomaticInertia(const sdf::Link& link);
 
@@ -23,8 +26,8 @@ bool HasAutomaticInertia(const sdf::Link& link);
 std::optional<geometry::MassProperties> AutomaticMassOf(const sdf::Link& link,
                                                         const geometry::Pose3& X_BL);
 
-/// The link's mass and inertia, in a body B.
-/// @pre HasWholeInertial
+/// The link's mass and inertia, in a body B; without <inertia> one of no meaning.
+/// @pre HasWholeInertial or HasMassAlone
 /// @throws base::ConfigError naming file, line and link: what is no number, or what no rigid body
 /// has.
 geometry::MassProperties MassPropertiesOf(const sdf::Link& link, const geometry::Pose3& X_BL);

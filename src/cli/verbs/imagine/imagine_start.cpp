@@ -225,6 +225,20 @@ void RequireObjects(const actions::Catalogue& catalogue,
   }
 }
 
+void RequirePostures(const ImagineStart& start, const robot::Robot& robot) {
+  if (robot.profile.upper_body) return;
+  for (const base::Atom& atom : start.atoms) {
+    if (atom.predicate == "Holding") return;  // brought the posture along, and is refused itself
+  }
+  for (const base::Atom& atom : start.atoms) {
+    if (atom.predicate != "HasArmPosture" && atom.predicate != "HasTorsoPosture") continue;
+    throw base::ConfigError(
+        fmt::format("--posture {}: robot '{}' has a base alone, no arms and no torso (upper_body "
+                    "in its profile); leave --posture out",
+                    base::Join(atom.arguments, ":"), robot.model.name));
+  }
+}
+
 void RequireSupport(const std::vector<imagination::PutObject>& put, const world::WorldState& state,
                     const world::World& world, const geometry::Pose2& X_MB, double reach) {
   const std::vector<Bearer> bearers = BearersIn(state, world);

@@ -8,6 +8,7 @@
 #include "hires/base/action.h"
 #include "hires/imagination/imagination_setup.h"
 #include "hires/imagination/start_state.h"
+#include "hires/robot/robot_profile.h"
 #include "hires/world/world.h"
 
 namespace CLI {
@@ -57,6 +58,11 @@ void AddAreaOption(CLI::App* app, std::vector<std::string>* areas);
 /// that is in no hand.
 void RequireObjects(const actions::Catalogue& catalogue,
                     const std::vector<base::ActionCall>& actions, const world::WorldState& world);
+
+/// Plans speak of postures to any robot, and one without arms and torso passes over them; whoever
+/// types one means its joints.
+/// @throws base::ConfigError for a posture of a robot that has none.
+void RequirePostures(const ImagineStart& start, const robot::Robot& robot);
 
 /// What is put by numbers in the map stands on the floor, on what stands or lies there, or on the
 /// robot, or would fall and be told as knocked over. Whatever is round a place counts as bearing.

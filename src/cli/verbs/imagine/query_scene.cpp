@@ -37,6 +37,7 @@ void RequireNames(const ImagineQuery& query, QueryScene* scene) {
     }
   };
   check([&] { imagination::MakeStartState(setup, query.start.from, {}); });
+  check([&] { RequirePostures(query.start, setup.scene->robot); });
   for (const std::string& object : query.start.Objects()) {
     if (setup.scene->world.initial.Find(object) == nullptr) check([&] { setup.ModelOf(object); });
   }

@@ -37,6 +37,15 @@ void RequireRollout(const std::string& option, const std::string& which,
   }
 }
 
+/// What is written has one format, whatever the file is called.
+void RequireEnding(const std::string& option, const std::string& file, const std::string& ending) {
+  const std::string its = std::filesystem::path(file).extension().string();
+  if (its.empty() || base::ToLower(its) == ending) return;  // /dev/null has none
+  throw base::ConfigError(fmt::format(
+      "{0} {1}: ends in {2}, wanted {3}, the format that {0} writes; give it {4}", option, file,
+      its, ending, std::filesystem::path(file).replace_extension(ending).string()));
+}
+
 /// A rollout of an answer, played again.
 struct Replayed {
   imagination::PickedRollout picked;
@@ -137,6 +146,8 @@ std::vector<std::string> StripFiles(const std::string& html) {
 void CheckSaveRollout(const SaveRolloutOptions& options, const ImagineQuery& query,
                       const MakeRolloutBag& make_bag) {
   if (options.which.empty()) return;
+  RequireEnding("--gif", options.gif, ".gif");
+  RequireEnding("--strip", options.strip, ".png");
   RequireRollout("--save-rollout", options.which, query);
   if (!options.beside.empty()) RequireRollout("--beside", options.beside, query);
   if (FilesOf(options).empty()) {

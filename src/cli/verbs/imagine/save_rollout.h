@@ -27,8 +27,8 @@ void AddSaveRolloutOptions(CLI::App* app, SaveRolloutOptions* options);
 std::vector<VerbFile> FilesOf(const SaveRolloutOptions& options);
 
 /// Before anything is imagined.  @throws base::ConfigError: no such choice, a rollout
-/// or an alternative that the query does not have, nowhere to save it to, a bag that this build
-/// cannot write.
+/// or an alternative that the query does not have, nowhere to save it to, a picture whose file ends
+/// like another format, a bag that this build cannot write.
 void CheckSaveRollout(const SaveRolloutOptions& options, const ImagineQuery& query,
                       const MakeRolloutBag& make_bag);
 
