@@ -1,5 +1,6 @@
 #include "hires/ros/imagination/imagine_request.h"
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -370,8 +371,10 @@ TEST(ImagineRequestTest, WhatCannotBePlayedIsRefusedByName) {
   hires::ImagineGoal goal = Goal();
   goal.rollouts = 0;
   EXPECT_THAT(ErrorOf(goal), HasSubstr("rollouts"));
-  goal.rollouts = 4294967295u;
-  EXPECT_THAT(ErrorOf(goal), HasSubstr("rollouts"));
+  for (const std::uint32_t many : {100001u, 2147483648u, 4000000000u, 4294967295u}) {
+    goal.rollouts = many;
+    EXPECT_THAT(ErrorOf(goal), HasSubstr(fmt::format("rollouts is {}, wanted", many)));
+  }
   goal = Goal();
   goal.deadline = ros::Duration(-1.0);
   EXPECT_THAT(ErrorOf(goal), HasSubstr("deadline"));

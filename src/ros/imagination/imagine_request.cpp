@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <memory>
 
 #include "hires/base/error.h"
@@ -67,8 +66,12 @@ hires::base::ActionTemplate StepOf(const hires::ImagineGoal& goal) {
 
 imagination::SchedulerParams ParamsOf(const hires::ImagineGoal& goal,
                                       const imagination::SchedulerParams& defaults) {
+  if (goal.rollouts > static_cast<std::uint32_t>(imagination::kMostRollouts)) {
+    throw hires::base::ConfigError(fmt::format("rollouts is {}, wanted between 1 and {}",
+                                               goal.rollouts, imagination::kMostRollouts));
+  }
   imagination::SchedulerParams params = defaults;
-  params.rollouts = static_cast<int>(std::min<std::uint32_t>(goal.rollouts, 1u << 30));
+  params.rollouts = static_cast<int>(goal.rollouts);
   params.deadline = goal.deadline.toSec();
   params.early_stop = !goal.play_all && defaults.early_stop;
   if (goal.min_success != 0.0) params.criteria.min_success = goal.min_success;
