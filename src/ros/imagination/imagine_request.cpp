@@ -6,6 +6,7 @@
 
 #include "hires/base/error.h"
 #include "hires/base/hash.h"
+#include "hires/base/log.h"
 #include "hires/base/short_text.h"
 #include "hires/imagination/uncertainty.h"
 #include "hires/ros/answer/report_messages.h"
@@ -13,6 +14,7 @@
 #include "hires/ros/values/action_messages.h"
 #include "hires/ros/values/atom_messages.h"
 #include "hires/ros/world/world_messages.h"
+#include "imagination/object_support.h"
 #include "imagination/uncertainty_layers.h"
 
 namespace hires_ros {
@@ -80,6 +82,18 @@ imagination::SchedulerParams ParamsOf(const hires::ImagineGoal& goal,
   return params;
 }
 
+/// Of a state that was observed it may be true, as far as it was seen.
+void WarnOfUnsupported(const hires::ImagineGoal& goal, const imagination::RolloutSetup& setup) {
+  std::vector<std::string> objects;
+  for (const hires::world::ObjectState& object : setup.world_state.objects)
+    objects.push_back(object.name);
+  for (const std::string& why : imagination::WhyUnsupported(objects, setup)) {
+    hires::base::Log(
+        hires::base::LogLevel::kWarn,
+        fmt::format("request={} world_state: {}", hires::base::Shortened(goal.request_id), why));
+  }
+}
+
 /// What all rollouts of a request have in common.
 void Complete(const hires::ImagineGoal& goal, const ImagineRequest& request,
               const imagination::ImaginationSetup& setup, hires::RolloutRef* ref) {
@@ -108,6 +122,7 @@ ImagineRequest RequestOf(const hires::ImagineGoal& goal, const imagination::Imag
   request.params = ParamsOf(goal, defaults);
   request.params.criteria.prices.time_limit = request.setup.params.time_limit;
   imagination::CheckSetupForAll(request.setup, request.actions);
+  if (goal.updated_fluents.empty()) WarnOfUnsupported(goal, request.setup);
   return request;
 }
 
