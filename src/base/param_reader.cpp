@@ -106,6 +106,14 @@ Bound<std::string> OneOf(std::vector<std::string> choices) {
           wanted};
 }
 
+std::optional<std::string> WordOf(bool value, const Bound<std::string>& bound) {
+  static const std::vector<std::string> kTrue{"on", "yes", "true"}, kFalse{"off", "no", "false"};
+  const std::vector<std::string>& words = value ? kTrue : kFalse;
+  const auto fitting = std::find_if(words.begin(), words.end(), bound.holds);
+  if (fitting == words.end()) return std::nullopt;
+  return *fitting;
+}
+
 struct ParamReader::Map {
   Map(const YAML::Node& map, std::string file, std::string path);
 

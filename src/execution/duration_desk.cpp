@@ -48,7 +48,14 @@ void DurationDesk::SayUnknown(int step, const std::string& why) {
 }
 
 void DurationDesk::SayWhatIsUnknown() {
-  for (const Question& question : questions_) SayUnknown(question.step, "no answer came in time");
+  for (const Question& question : questions_)
+    SayUnimagined(question.step, "no answer came in time");
+}
+
+void DurationDesk::SayUnimagined(int step, const std::string& why) {
+  const base::ActionCall& action = session_.progress().run().at(step).action;
+  unimagined_.push_back(fmt::format("{}: {}", base::ToString(action), why));
+  SayUnknown(step, why);
 }
 
 void DurationDesk::Ask(int step) {
@@ -71,6 +78,7 @@ void DurationDesk::OnAnswer(const ImagineAnswered& answer) {
   if (question == questions_.end()) return;
   const int step = question->step;
   questions_.erase(question);
+  if (IsUnimagined(answer.outcome)) return SayUnimagined(step, WhyNothing(answer));
   const bool is_known =
       answer.outcome == ImagineAnswered::Outcome::kRanked && answer.duration > 0.0;
   if (!is_known) {
@@ -88,6 +96,7 @@ void DurationDesk::Close() {
     session_.outbox().Send(CancelImagination{question.request});
   }
   questions_.clear();
+  unimagined_.clear();
   plan_.reset();
 }
 

@@ -24,6 +24,9 @@ class DurationDesk {
   /// Whether no answer is awaited any more. @pre Update was called for the present plan.
   bool IsAnswered() const;
   std::optional<double> WakeAt() const;
+  /// Of each step that was asked about and that nobody has imagined, "action: why".
+  /// @pre SayWhatIsUnknown was called.
+  const std::vector<std::string>& unimagined() const { return unimagined_; }
 
  private:
   struct Question {
@@ -34,11 +37,13 @@ class DurationDesk {
 
   bool IsUnknown(int step) const;
   void SayUnknown(int step, const std::string& why);
+  void SayUnimagined(int step, const std::string& why);
   void Ask(int step);
 
   Session& session_;
   std::optional<int> plan_;          // number of the one that was asked about
   std::vector<Question> questions_;  // that are not answered
+  std::vector<std::string> unimagined_;
 };
 
 }  // namespace hires::execution

@@ -141,6 +141,16 @@ std::vector<std::string> ImaginationDesk::Invalid() const {
   return texts;
 }
 
+std::vector<std::string> ImaginationDesk::Unimagined() const {
+  std::vector<std::string> texts;
+  for (const Question& question : questions_) {
+    if (question.answer || question.is_hopeless || question.undecided) continue;
+    const StepRun& step = session_.progress().run().at(question.step);
+    texts.push_back(fmt::format("{}: {}", ToString(question.action), step.note));
+  }
+  return texts;
+}
+
 void ImaginationDesk::TakeDefaults(Question* question) {
   SetDefaults(*question);
   StepRun& target = session_.progress().run().at(question->target);

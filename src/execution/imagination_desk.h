@@ -38,6 +38,8 @@ class ImaginationDesk {
   void SettleAll();  ///< as if every step began
   /// Of each question whose action makes no sense, "action: why".
   std::vector<std::string> Invalid() const;
+  /// Likewise of each that nobody has imagined. @pre all are settled.
+  std::vector<std::string> Unimagined() const;
   std::optional<double> WakeAt() const;
 
  private:

@@ -56,6 +56,12 @@ void ExpectAsImagined(const ImagineAnswered& answer, int step, Session* session)
                   base::ToString(Lowered(answer.recommended)), *conflict));
 }
 
+bool IsUnimagined(ImagineAnswered::Outcome outcome) {
+  using Outcome = ImagineAnswered::Outcome;
+  return outcome == Outcome::kNoWorker || outcome == Outcome::kNothingFinished ||
+         outcome == Outcome::kUnavailable;
+}
+
 std::string WhyNothing(const ImagineAnswered& answer) {
   return OutcomeText(answer.outcome) + (answer.why.empty() ? "" : ": " + answer.why);
 }

@@ -16,6 +16,9 @@ Facts ProjectedTo(const Session& session, int step);
 /// @pre the answer is kRanked.
 void ExpectAsImagined(const ImagineAnswered& answer, int step, Session* session);
 
+/// Nobody has imagined it; an answer that is undecided, or finds it to be senseless, is one.
+bool IsUnimagined(ImagineAnswered::Outcome outcome);
+
 /// Why an answer other than kRanked recommends nothing; for people.
 std::string WhyNothing(const ImagineAnswered& answer);
 

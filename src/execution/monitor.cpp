@@ -166,7 +166,18 @@ void Monitor::Impl::EndDryRun() {
     return Conclude(Finish::Outcome::kFailed, base::Join(invalid, "; "),
                     base::FailureCode::kInvalidAction);
   }
-  Conclude(Finish::Outcome::kDryRun, "planned and imagined; nothing was begun");
+  std::vector<std::string> unimagined = desk.Unimagined();
+  unimagined.insert(unimagined.end(), durations.unimagined().begin(), durations.unimagined().end());
+  if (!unimagined.empty()) {
+    return Conclude(Finish::Outcome::kFailed,
+                    "planned, but not imagined: " + base::Join(unimagined, "; ") +
+                        "; start what imagines (roslaunch hires imagination.launch, and "
+                        "translator.launch), or ask for no imagination (off); nothing was begun",
+                    base::FailureCode::kUnavailable);
+  }
+  const bool is_off = session.params().imagination == MonitorParams::ImaginePolicy::kOff;
+  Conclude(Finish::Outcome::kDryRun,
+           is_off ? "planned; nothing was begun" : "planned and imagined; nothing was begun");
 }
 
 void Monitor::Impl::TakeUpViolation() {

@@ -20,8 +20,7 @@ std::string PathFrom(const std::string& config_path, const std::string& path) {
 
 MonitorParams ReadMonitor(ParamReader in) {
   MonitorParams params;
-  params.imagination =
-      ReadImaginePolicy(in.Get("imagination", base::OneOf({"domain", "thesis", "off"})));
+  params.imagination = ReadImaginePolicy(in.Get("imagination", ImaginePolicyWord()));
   params.max_replans = in.Get("max_replans", Between(0, 1000));
   params.effect_timeout = in.Get("effect_timeout", Between(0.0, kLongest));
   params.observation_delay = in.Get("observation_delay", Between(0.0, kLongest));
@@ -55,6 +54,8 @@ ServerParams ReadServers(ParamReader in) {
 }
 
 }  // namespace
+
+base::Bound<std::string> ImaginePolicyWord() { return base::OneOf({"domain", "thesis", "off"}); }
 
 MonitorParams::ImaginePolicy ReadImaginePolicy(const std::string& word) {
   if (word == "domain") return MonitorParams::ImaginePolicy::kDomain;

@@ -1,5 +1,7 @@
 #include "hires/localisation/monte_carlo.h"
 
+#include <fmt/format.h>
+
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
@@ -107,6 +109,20 @@ std::string WhyUseless(const world::OccupancyGrid& map) {
            "unknown (occupied_thresh)?";
   }
   return "";
+}
+
+Eigen::AlignedBox2d ExtentOf(const world::OccupancyGrid& map) {
+  const Eigen::Vector2d size = map.resolution * Eigen::Vector2d(map.width, map.height);
+  return {map.origin, map.origin + size};
+}
+
+std::string WhyOutside(const Pose2& X_MB, const Eigen::AlignedBox2d& extent) {
+  const Eigen::Vector2d p_MB = X_MB.position();
+  if (!p_MB.allFinite() || extent.contains(p_MB)) return "";
+  return fmt::format(
+      "x {:.6g} m, y {:.6g} m lies outside of the map, which reaches from x {:.6g} to {:.6g} m and "
+      "from y {:.6g} to {:.6g} m",
+      p_MB.x(), p_MB.y(), extent.min().x(), extent.max().x(), extent.min().y(), extent.max().y());
 }
 
 class MonteCarloLocalisation::Belief {

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <limits>
 #include <set>
+#include <utility>
 
 #include "base/files/plain_xml.h"
 #include "hires/base/text.h"
@@ -169,8 +170,19 @@ bool IsLaserType(const std::string& type) {
   return type == "ray" || type == "gpu_ray" || type == "lidar" || type == "gpu_lidar";
 }
 
-std::string LaserText(const RobotModel& model, const std::string& urdf_xml) {
-  const std::vector<std::string> links = LaserLinks(model, urdf_xml);
+/// How much says of a laser that it looks where the robot drives.
+int SignsOfAhead(const Robot& robot, const std::vector<geometry::Pose3>& X_R,
+                 const std::string& name) {
+  constexpr double kAhead = 0.9;  // least cosine between its x axis and the base's
+  const int base = robot.model.FindLink(robot.profile.base_link).value_or(0);
+  const Eigen::Matrix3d R_BL =
+      (X_R[base].Inverse() * X_R[*robot.model.FindLink(name)]).rotation.toRotationMatrix();
+  const bool has_name = base::ToLower(name).find("front") != std::string::npos;
+  return (R_BL(0, 0) > kAhead ? 1 : 0) + (has_name ? 1 : 0);
+}
+
+std::string LaserText(const Robot& robot, const std::string& urdf_xml) {
+  const std::vector<std::string> links = LaserLinks(robot, urdf_xml);
   if (links.empty())
     return "laser_link: none is named, so it drives by the map alone, and sees nothing on its way";
   return fmt::format(
@@ -255,7 +267,7 @@ void AddMotion(const Robot& robot, const IsGiven& is_given, std::vector<std::str
 
 }  // namespace
 
-std::vector<std::string> LaserLinks(const RobotModel& model, const std::string& urdf_xml) {
+std::vector<std::string> LaserLinks(const Robot& robot, const std::string& urdf_xml) {
   std::set<std::string> by_sensor;
   const std::string xml = base::PlainXml(urdf_xml, "URDF");  // was read before
   tinyxml2::XMLDocument document;
@@ -273,15 +285,18 @@ std::vector<std::string> LaserLinks(const RobotModel& model, const std::string& 
     }
   }
   std::vector<std::string> links;
-  for (const Link& link : model.links) {
+  for (const Link& link : robot.model.links) {
     const std::string lower = base::ToLower(link.name);
     const auto has = [&](const char* word) { return lower.find(word) != std::string::npos; };
     if (by_sensor.count(link.name) > 0 || has("laser") || has("lidar") || has("base_scan"))
       links.push_back(link.name);
   }
-  // Of links with the same claim the one with a sensor comes first.
-  std::stable_partition(links.begin(), links.end(),
-                        [&](const std::string& name) { return by_sensor.count(name) > 0; });
+  const auto X_R = ForwardKinematics(robot.model, robot.profile.joints);
+  const auto claim = [&](const std::string& name) {
+    return std::pair(by_sensor.count(name), SignsOfAhead(robot, X_R, name));
+  };
+  std::stable_sort(links.begin(), links.end(),
+                   [&](const std::string& a, const std::string& b) { return claim(a) > claim(b); });
   return links;
 }
 
@@ -324,7 +339,7 @@ std::vector<std::string> AssumptionsOf(const Robot& robot, const IsGiven& is_giv
         robot.profile.base_link, LowestShape(bounds)));
   }
   if (robot.profile.laser_link.empty()) {
-    texts.push_back(LaserText(robot.model, urdf_xml));
+    texts.push_back(LaserText(robot, urdf_xml));
   }
   if (!robot.profile.tray_link.empty() && !is_given("object_on_tray"))
     texts.push_back(TrayText(robot, bounds, is_given));

@@ -19,7 +19,8 @@ std::vector<std::string> AssumptionsOf(const Robot& robot,
                                        const std::string& urdf_xml);
 
 /// Links of the URDF that have a laser: by a ray sensor in <gazebo reference=...>, or by their
-/// name. In the order of the model.
-std::vector<std::string> LaserLinks(const RobotModel& model, const std::string& urdf_xml);
+/// name. Those with a sensor first; of these that which looks ahead, by its x axis and "front" in
+/// its name; then in the order of the model.
+std::vector<std::string> LaserLinks(const Robot& robot, const std::string& urdf_xml);
 
 }  // namespace hires::robot

@@ -59,12 +59,32 @@ std::optional<int> SwivelAbove(const RobotModel& model, const std::vector<geomet
   return std::nullopt;
 }
 
-/// A swivel that something turns; nothing for a caster that trails.
-std::optional<SteeredWheel> SteeredBy(const Joint& swivel, const geometry::Pose3& X_RS) {
-  const bool has_limits = swivel.type == JointType::kRevolute && swivel.limits;
-  if (!has_limits && base::ToLower(swivel.name).find("steer") == std::string::npos) {
-    return std::nullopt;
+/// What a simulator's plugin says of the drive, and its file.
+using DrivePlugin = std::pair<Drive, std::string>;
+
+std::optional<DrivePlugin> PluginOf(const RobotModel& model) {
+  constexpr std::pair<const char*, Drive> kSigns[] = {
+      {"planar_move", Drive::kOmnidirectional},
+      {"mecanum", Drive::kOmnidirectional},
+      {"velocity_control_system", Drive::kOmnidirectional},
+      {"diff_drive", Drive::kDifferential},
+      {"skid_steer", Drive::kDifferential},
+      {"ackermann", Drive::kCarLike}};
+  for (const std::string& file : model.plugins) {
+    std::string words = base::ToLower(file);
+    std::replace(words.begin(), words.end(), '-', '_');
+    for (const auto& [sign, drive] : kSigns)
+      if (words.find(sign) != std::string::npos) return DrivePlugin(drive, file);
   }
+  return std::nullopt;
+}
+
+/// A swivel that something turns; nothing for a caster that trails, as a car has none.
+std::optional<SteeredWheel> SteeredBy(const Joint& swivel, const geometry::Pose3& X_RS,
+                                      bool is_car) {
+  const bool has_limits = swivel.type == JointType::kRevolute && swivel.limits;
+  const bool has_name = base::ToLower(swivel.name).find("steer") != std::string::npos;
+  if (!has_limits && !has_name && !is_car) return std::nullopt;
   const double angle =
       has_limits ? std::min(-swivel.limits->lower, swivel.limits->upper) : kUsualSteering;
   if (angle < kLeastSteering) return std::nullopt;
@@ -84,6 +104,8 @@ std::vector<geometry::Pose3> PosesInBase(const RobotModel& model, const std::str
 
 Wheels WheelsOf(const RobotModel& model, const std::string& base_link) {
   const std::vector<geometry::Pose3> X_B = PosesInBase(model, base_link);
+  const auto plugin = PluginOf(model);
+  const bool is_car = plugin && plugin->first == Drive::kCarLike;
   Wheels wheels;
   for (std::size_t i = 0; i < model.links.size(); ++i) {
     const auto& joint = model.links[i].joint;
@@ -92,7 +114,7 @@ Wheels WheelsOf(const RobotModel& model, const std::string& base_link) {
     if (std::abs(axis.z()) > kHorizontal) continue;
     if (const auto swivel = SwivelAbove(model, X_B, static_cast<int>(i))) {
       wheels.casters.push_back(joint->name);
-      const auto steered = SteeredBy(*model.links[*swivel].joint, X_B[*swivel]);
+      const auto steered = SteeredBy(*model.links[*swivel].joint, X_B[*swivel], is_car);
       if (steered) wheels.steered.push_back(*steered);
     } else {
       wheels.fixed.push_back({joint->name, axis, X_B[i].translation});
@@ -211,6 +233,25 @@ std::optional<DriveGuess> GuessCar(const Wheels& wheels, std::size_t first, std:
   return DriveGuess{Drive::kCarLike, radius, WithMisfit(why, misfit), misfit};
 }
 
+/// Where the wheels do not tell. A car's least circle no plugin says.
+DriveGuess GuessByPlugin(const RobotModel& model) {
+  const std::string no_wheels = "no wheels (continuous joints) that could drive it sideways";
+  const auto plugin = PluginOf(model);
+  if (!plugin) return {Drive::kDifferential, 0.0, no_wheels};
+  const std::string what = fmt::format("a plugin '{}'", plugin->second);
+  switch (plugin->first) {
+    case Drive::kOmnidirectional:
+      return {Drive::kOmnidirectional, 0.0, what + ", which drives it sideways, too"};
+    case Drive::kDifferential:
+      return {Drive::kDifferential, 0.0, what};
+    case Drive::kCarLike:
+      break;
+  }
+  return {Drive::kDifferential, 0.0,
+          no_wheels + "; but " + what +
+              " of a car: a profile says so, drive: car_like with min_turning_radius"};
+}
+
 const std::map<Drive, std::string>& Names() {
   static const std::map<Drive, std::string> names{{Drive::kOmnidirectional, "omnidirectional"},
                                                   {Drive::kDifferential, "differential"},
@@ -235,9 +276,11 @@ DriveGuess GuessDrive(const RobotModel& model, const std::string& base_link) {
     if (auto car = GuessCar(wheels, pair->first, pair->second, base_link)) return *car;
     const FixedWheel &one = wheels.fixed[pair->first], &other = wheels.fixed[pair->second];
     const std::string misfit = MisfitOf(one.axis, MiddleOf(wheels, one), kOnAxles, base_link);
-    return {Drive::kDifferential, 0.0,
-            WithMisfit(fmt::format("parallel wheels: {}, {}", one.joint, other.joint), misfit),
-            misfit};
+    std::string why = fmt::format("parallel wheels: {}, {}", one.joint, other.joint);
+    const auto plugin = PluginOf(model);
+    if (plugin && plugin->first == Drive::kOmnidirectional)
+      why += fmt::format(" (a plugin '{}' drives it sideways, too)", plugin->second);
+    return {Drive::kDifferential, 0.0, WithMisfit(why, misfit), misfit};
   }
   if (wheels.fixed.size() >= 3) {
     return {Drive::kOmnidirectional, 0.0,
@@ -247,7 +290,7 @@ DriveGuess GuessDrive(const RobotModel& model, const std::string& base_link) {
     return {Drive::kOmnidirectional, 0.0,
             "steered casters alone: " + base::Join(wheels.casters, ", ")};
   }
-  return {Drive::kDifferential, 0.0, "no wheels (continuous joints) that could drive it sideways"};
+  return GuessByPlugin(model);
 }
 
 }  // namespace hires::robot

@@ -50,6 +50,7 @@ class ModelBuilder {
 
   UrdfReading Build() {
     model_.name = urdf_.getName();
+    model_.plugins = outline_.plugins;
     ReadMeshes();
     AddTree();
     ResolveMimics();

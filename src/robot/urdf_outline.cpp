@@ -40,6 +40,7 @@ class OutlineReader {
     CheckLoops();
     CheckOneRoot();
     ReadFriction();
+    ReadPlugins();
     return std::move(outline_);
   }
 
@@ -213,6 +214,16 @@ class OutlineReader {
       problems_.Add(place.line, fmt::format("<{}> holds no friction coefficient; wanted a finite "
                                             "number of at least 0",
                                             place.element));
+    }
+  }
+
+  void ReadPlugins() {
+    for (const auto* gazebo = robot_->FirstChildElement("gazebo"); gazebo != nullptr;
+         gazebo = gazebo->NextSiblingElement("gazebo")) {
+      for (const auto* plugin = gazebo->FirstChildElement("plugin"); plugin != nullptr;
+           plugin = plugin->NextSiblingElement("plugin")) {
+        if (const char* file = plugin->Attribute("filename")) outline_.plugins.emplace_back(file);
+      }
     }
   }
 

@@ -16,6 +16,8 @@ struct UrdfOutline {
   std::map<std::string, int> joint_lines;  ///< joint name -> line in the file
   std::map<std::string, double> friction;  ///< by link: see base::ReadUrdfFriction
 
+  std::vector<std::string> plugins;  ///< files of those in <gazebo>
+
   Told endless_friction;  ///< links with one that is infinite or negative: 1000
 
   // What is to be left out or put in for the rest to be read; empty if nothing is wrong.

@@ -60,6 +60,17 @@ TEST(BoundTest, WholeNumbersAndChoicesSayWhatTheyWant) {
   EXPECT_EQ(OneOf({"a", "b"}).wanted, "one of 'a', 'b'");
 }
 
+TEST(BoundTest, AWordThatYamlReadsAsABoolIsFoundAmongTheChoices) {
+  const std::pair<const char*, const char*> kPairs[] = {
+      {"on", "off"}, {"yes", "no"}, {"true", "false"}};
+  for (const auto& [on, off] : kPairs) {
+    EXPECT_EQ(WordOf(true, OneOf({"domain", on, off})), on);
+    EXPECT_EQ(WordOf(false, OneOf({"domain", on, off})), off);
+    EXPECT_EQ(WordOf(true, OneOf({"domain", off})), std::nullopt);
+    EXPECT_EQ(WordOf(false, OneOf({"domain", on})), std::nullopt);
+  }
+}
+
 TEST(ParamReaderTest, ReadsEveryType) {
   ParamReader in = Read(
       "step: 0.001\n"

@@ -3,12 +3,10 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <memory>
 #include <string>
 #include <vector>
 
 #include "support/messages.h"
-#include "support/scenes.h"
 
 namespace hires::cli::imagine_start_test {
 namespace {
@@ -151,51 +149,6 @@ TEST(RequirePosturesTest, OfARobotThatIsABaseAloneNoneIsPassedOver) {
   EXPECT_EQ(why_not({}), "(no ConfigError was thrown)");
   robot.profile.upper_body.emplace();
   EXPECT_EQ(why_not({"torso1:TorsoUpPosture"}), "(no ConfigError was thrown)");
-}
-
-/// A hall with a table of 0.75 m that stands on its plate alone, as furniture of plates does.
-world::World HallWithTable() {
-  world::World hall;
-  hall.statics = {hires::test_support::Block("plate", {1.0, 0.8, 0.05}, {3.0, 0.0, 0.725})};
-  auto cup = std::make_shared<world::ObjectModel>();
-  cup->name = "cup";
-  cup->collisions = {
-      hires::test_support::Shape("c", geometry::Cylinder{0.04, 0.1}, {0.0, 0.0, 0.05})};
-  hall.models["cup"] = cup;
-  return hall;
-}
-
-TEST(RequireSupportTest, WhatIsPutByNumbersStandsOnSomething) {
-  const world::World hall = HallWithTable();
-  const auto why_not = [&](const std::vector<Eigen::Vector3d>& places) {
-    std::vector<imagination::PutObject> put;
-    world::WorldState state;
-    for (std::size_t i = 0; i < places.size(); ++i) {
-      const std::string name = "cup" + std::to_string(i + 1);
-      put.push_back({name, "", geometry::Lift({places[i].x(), places[i].y(), 0.0}, places[i].z())});
-      world::ObjectState cup;
-      cup.name = name;
-      cup.model = "cup";
-      cup.X_MO = put.back().X_AO;
-      state.objects.push_back(cup);
-    }
-    return ConfigErrorOf([&] { RequireSupport(put, state, hall, {}, 0.5); });
-  };
-  for (const std::vector<Eigen::Vector3d>& right :
-       std::vector<std::vector<Eigen::Vector3d>>{{{1.0, 0.0, 0.0}},    // the floor
-                                                 {{1.0, 0.0, 0.05}},   // let go just above it
-                                                 {{3.0, 0.0, 0.75}},   // the table
-                                                 {{3.52, 0.0, 0.75}},  // over its edge
-                                                 {{3.0, 0.0, 0.75}, {3.0, 0.0, 0.85}},  // a stack
-                                                 {{3.0, 0.0, 0.0}},     // below the table
-                                                 {{0.2, 0.0, 0.9}}}) {  // the robot
-    EXPECT_EQ(why_not(right), "(no ConfigError was thrown)") << right.back().transpose();
-  }
-  EXPECT_THAT(why_not({{1.0, 0.0, 5.0}}),
-              AllOf(HasSubstr("'cup1'"), HasSubstr("5 m over the floor"), HasSubstr("height")));
-  EXPECT_THAT(why_not({{3.0, 0.0, 1.0}}), HasSubstr("0.25 m over 'plate'"));
-  EXPECT_THAT(why_not({{3.0, 0.0, 0.5}}), HasSubstr("0.5 m over the floor"));
-  EXPECT_THAT(why_not({{1.0, 0.0, 0.0}, {1.0, 0.0, 0.3}}), HasSubstr("0.2 m over 'cup1'"));
 }
 
 TEST(AreaFilesOfTest, FilesAreToldFromAreas) {

@@ -68,6 +68,10 @@ TEST_F(MonitorConfigTest, BadValuesAreErrorsThatNameTheKey) {
 TEST(ReadImaginePolicyTest, NamesTheChoices) {
   EXPECT_EQ(ReadImaginePolicy("off"), MonitorParams::ImaginePolicy::kOff);
   EXPECT_THROW(ReadImaginePolicy(""), base::ConfigError);
+  for (const char* word : {"domain", "thesis", "off"}) {
+    EXPECT_TRUE(ImaginePolicyWord().holds(word));
+    EXPECT_NO_THROW(ReadImaginePolicy(word));
+  }
 }
 
 }  // namespace

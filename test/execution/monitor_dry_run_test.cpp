@@ -151,15 +151,53 @@ TEST(DryRunTest, WhereEverythingIsImaginedToFailThereIsNoPlan) {
   EXPECT_THAT(world.Begun(), IsEmpty());
 }
 
-TEST(DryRunTest, NobodyWhoImaginesIsSaidAtOnceWithTheDefault) {
-  auto options = DryRun("carry_object");
-  options.imagine = [](const StartImagination&, int) {
+/// It names each of the steps and what is to be done, and does not say that all was imagined.
+void ExpectUnimagined(const ScriptedWorld& world, const Finish& finish,
+                      const std::vector<std::string>& steps) {
+  EXPECT_EQ(finish.outcome, Finish::Outcome::kFailed);
+  EXPECT_EQ(finish.failure, base::FailureCode::kUnavailable);
+  EXPECT_THAT(finish.reason, AllOf(HasSubstr("not imagined"), HasSubstr("imagination.launch"),
+                                   Not(HasSubstr("planned and imagined"))));
+  for (const std::string& step : steps) EXPECT_THAT(finish.reason, HasSubstr(step + "("));
+  EXPECT_THAT(world.Begun(), IsEmpty());
+}
+
+std::function<std::optional<ImagineAnswered>(const StartImagination&, int)> Nothing(
+    ImagineAnswered::Outcome outcome) {
+  return [outcome](const StartImagination&, int) {
     ImagineAnswered answer;
-    answer.outcome = ImagineAnswered::Outcome::kNoWorker;
+    answer.outcome = outcome;
     return answer;
   };
+}
+
+TEST(DryRunTest, WhatNobodyImaginesIsNoDryRunThatWentWell) {
+  using Outcome = ImagineAnswered::Outcome;
+  for (const Outcome outcome :
+       {Outcome::kNoWorker, Outcome::kUnavailable, Outcome::kNothingFinished}) {
+    auto options = DryRun("carry_object");
+    options.imagine = Nothing(outcome);
+    ScriptedWorld world(options);
+    ExpectUnimagined(world, world.Run(TaskOf("carry_object")), {"move_base_param", "move_base"});
+    auto durations_alone = DryRun("serve_coffee");
+    durations_alone.imagine = Nothing(outcome);
+    ScriptedWorld served(durations_alone);
+    ExpectUnimagined(served, served.Run(TaskOf("serve_coffee")), {"move_base"});
+  }
+}
+
+TEST(DryRunTest, WhatIsUndecidedWasImagined) {
+  auto options = DryRun("carry_object");
+  options.imagine = Nothing(ImagineAnswered::Outcome::kUndecided);
   ScriptedWorld world(options);
   ExpectNothingBegun(world, world.Run(TaskOf("carry_object")));
+}
+
+TEST(DryRunTest, NobodyWhoImaginesIsSaidAtOnceWithTheDefault) {
+  auto options = DryRun("carry_object");
+  options.imagine = Nothing(ImagineAnswered::Outcome::kNoWorker);
+  ScriptedWorld world(options);
+  ExpectUnimagined(world, world.Run(TaskOf("carry_object")), {"move_base_param", "move_base"});
   EXPECT_THAT(AskedHow(world), SizeIs(1));
   EXPECT_THAT(FirstDriveOf(world.monitor().Steps())->note,
               HasSubstr("how long it lasts is not known: no worker is there to imagine it"));
@@ -199,7 +237,7 @@ TEST(DryRunTest, SilenceEndsAtTheLongestWait) {
   auto options = DryRun("carry_object");
   options.imagine = [](const StartImagination&, int) { return std::nullopt; };
   ScriptedWorld world(options);
-  ExpectNothingBegun(world, world.Run(TaskOf("carry_object")));
+  ExpectUnimagined(world, world.Run(TaskOf("carry_object")), {"move_base_param", "move_base"});
   EXPECT_NEAR(world.now(), 1000.05 + 2.0 * options.monitor.max_wait, 1.0)
       << "how to drive, how long the rest lasts";
   EXPECT_THAT(FirstDriveOf(world.monitor().Steps())->note,
@@ -210,7 +248,9 @@ TEST(DryRunTest, WithoutImaginationThePlanAloneIsShown) {
   auto options = DryRun("carry_object");
   options.monitor.imagination = MonitorParams::ImaginePolicy::kOff;
   ScriptedWorld world(options);
-  ExpectNothingBegun(world, world.Run(TaskOf("carry_object")));
+  const Finish finish = world.Run(TaskOf("carry_object"));
+  ExpectNothingBegun(world, finish);
+  EXPECT_EQ(finish.reason, "planned; nothing was begun");
   EXPECT_THAT(world.imaginations(), IsEmpty());
   EXPECT_EQ(DriveOf(world.monitor().Steps())->action.arguments.back(), "fast");
   EXPECT_THAT(FirstDriveOf(world.monitor().Steps())->note,

@@ -453,6 +453,25 @@ TEST(MonteCarloTest, PosesAndMapsThatAreNoneAreRefused) {
   EXPECT_THROW(nowhere.GlobalLocalisation(), base::ConfigError);
 }
 
+TEST(MonteCarloTest, APoseThatIsNoneOfTheMapIsNamedWithItsExtent) {
+  OccupancyGrid map;
+  map.resolution = 0.1;
+  map.width = 100;
+  map.height = 50;
+  map.origin = {-2.0, -3.0};
+  const Eigen::AlignedBox2d extent = ExtentOf(map);
+  for (const Pose2& within : {Pose2{}, Pose2{-2.0, -3.0, 1.0}, Pose2{7.9, 1.9, -1.0}})
+    EXPECT_EQ(WhyOutside(within, extent), "");
+  for (const Pose2& off :
+       {Pose2{500.0, 0.0, 0.0}, Pose2{8.1, 0.0, 0.0}, Pose2{0.0, 2.1, 0.0}, Pose2{0.0, -1e5, 0.0}})
+    EXPECT_NE(WhyOutside(off, extent), "") << off.x << " " << off.y;
+  EXPECT_EQ(
+      WhyOutside({500.0, -0.5, 0.0}, extent),
+      "x 500 m, y -0.5 m lies outside of the map, which reaches from x -2 to 8 m and from y -3 "
+      "to 2 m");
+  EXPECT_EQ(WhyOutside({kNan, 0.0, 0.0}, extent), "") << "SetPose says what it is";
+}
+
 TEST(LocaliseLogTest, TrajectoryOfADriveComesCloseToTheTruth) {
   const SimulatedDrive drive = Drive(3);
   const LocalisedLog localised = LocaliseLog(

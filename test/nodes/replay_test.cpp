@@ -515,6 +515,12 @@ TEST(ReplayAllTest, WhatWasInterruptedIsLeftOut) {
   EXPECT_EQ(asked, 2);
 }
 
+TEST(ReplayTextTest, ALongRequestIdIsCut) {
+  const std::string id(100000, 'i');
+  const Session session = Replay({{"/imagine", "g1", Goal(id), Ranked(8)}}, AnswerBySeed);
+  EXPECT_LT(ReplayText(session.replayed[0]).size(), 10000u);
+}
+
 TEST(ReplayJsonTest, HoldsBothAnswersAndTheVerdict) {
   const Session session = Replay({{"/imagine", "g1", Goal("one"), Ranked(8)}}, AnswerBySeed);
   const auto json = ReplayJson(session.replayed[0]);

@@ -13,6 +13,7 @@ namespace {
 
 using hires::test_support::ConfigErrorOf;
 using ::testing::AllOf;
+using ::testing::EndsWith;
 using ::testing::HasSubstr;
 using ::testing::StartsWith;
 
@@ -63,6 +64,23 @@ TEST(TaskTextTest, TextThatIsNoTaskIsRefusedWithItsPlace) {
   EXPECT_THAT(ErrorOf("3 4"), StartsWith("task:"));
   // Cannot leave the tasks: what would be another problem is no task.
   EXPECT_THAT(ErrorOf("(a)) (defproblem p d () ((b))"), StartsWith("task:1:4: "));
+}
+
+TEST(TaskTextTest, ATaskWrittenAsACallIsToldHowTasksAreWritten) {
+  const std::pair<const char*, const char*> kCalls[] = {
+      {"serve(guest1)", "serve guest1"},
+      {" carry(mug1, table1) ", "carry mug1 table1"},
+      {"carry(mug1,table1)", "carry mug1 table1"},
+      {"tidy_up()", "tidy_up"},
+      {"serve(guest1", "serve guest1"},
+      {"!drive(table1 fast) 1", "!drive table1 fast"}};
+  for (const auto& [call, task] : kCalls) {
+    EXPECT_THAT(ErrorOf(call), AllOf(StartsWith("task: '"), HasSubstr("is written as a call"),
+                                     EndsWith(std::string("arguments: ") + task)))
+        << call;
+  }
+  EXPECT_EQ(TasksOf("carry (mug1)"), Texts{"(carry (mug1))"}) << "an argument that is a list";
+  EXPECT_EQ(TasksOf("(carry(mug1))"), Texts{"(carry (mug1))"}) << "SHOP2";
 }
 
 TEST(TaskTextTest, ATermIsOneAndGround) {

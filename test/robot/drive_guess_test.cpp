@@ -167,6 +167,44 @@ TEST(DriveGuessTest, WithoutWheelsItIsTheOneThatEveryBaseCanDo) {
   EXPECT_EQ(GuessFor(Turning("head", "base", "0 0 1")).drive, Drive::kDifferential);
 }
 
+std::string Plugin(const std::string& file) {
+  return fmt::format(R"(<gazebo><plugin name="p" filename="{}"><max>1</max></plugin></gazebo>)",
+                     file);
+}
+
+TEST(DriveGuessTest, WhereWheelsDoNotTellASimulatorsPluginDoes) {
+  const std::string other = Plugin("libgazebo_ros_control.so");
+  for (const char* file :
+       {"libgazebo_ros_planar_move.so", "libignition-gazebo-mecanum-drive-system.so",
+        "gz-sim-velocity-control-system", "ignition-gazebo-velocity-control-system"}) {
+    const DriveGuess guess = GuessFor(other + Plugin(file));
+    EXPECT_EQ(guess.drive, Drive::kOmnidirectional) << file;
+    EXPECT_THAT(guess.why, HasSubstr(file));
+    const DriveGuess wheels = GuessFor(kRearWheels + Plugin(file));
+    EXPECT_EQ(wheels.drive, Drive::kDifferential) << "its wheels tell";
+    EXPECT_THAT(wheels.why, AllOf(HasSubstr("parallel wheels"), HasSubstr(file)));
+  }
+  for (const char* file : {"libgazebo_ros_diff_drive.so", "libgazebo_ros_skid_steer_drive.so",
+                           "libignition-gazebo-diff-drive-system.so", "gz-sim-diff-drive-system"}) {
+    const DriveGuess guess = GuessFor(Plugin(file) + other);
+    EXPECT_EQ(guess.drive, Drive::kDifferential) << file;
+    EXPECT_THAT(guess.why, HasSubstr(file));
+  }
+  EXPECT_THAT(GuessFor(other).why, Not(HasSubstr("plugin")));
+}
+
+TEST(DriveGuessTest, ByACarsPluginItsWheelsThatSwivelAreSteered) {
+  for (const char* file :
+       {"libgazebo_ros_ackermann_drive.so", "libignition-gazebo-ackermann-steering-system.so"}) {
+    const DriveGuess guess =
+        GuessFor(kRearWheels + Steered("a", 0.0, R"(type="continuous">)") + Plugin(file));
+    EXPECT_EQ(guess.drive, Drive::kCarLike) << file;
+    EXPECT_NEAR(guess.min_turning_radius, 0.8 / std::tan(0.5), 1e-9);
+    EXPECT_THAT(GuessFor(Plugin(file)).why,
+                AllOf(HasSubstr(file), HasSubstr("drive: car_like with min_turning_radius")));
+  }
+}
+
 TEST(DriveGuessTest, APr2DrivesAnywhere) {
   const RobotModel pr2 = LoadRobotModel(std::string(HIRES_SOURCE_DIR) + "/urdf/pr2_tray.urdf");
   EXPECT_EQ(GuessDrive(pr2, pr2.links.front().name).drive, Drive::kOmnidirectional);

@@ -105,6 +105,44 @@ TEST(WriteProfileTest, WhatIsNoLongerACommentIsNoLongerAssumed) {
   EXPECT_THAT(robot.assumed, Not(Contains(HasSubstr("base_controller"))));
 }
 
+/// A fixed link, turned by yaw; with a ray sensor, or none.
+std::string LaserAt(const std::string& name, double yaw, bool has_sensor) {
+  return fmt::format(
+      "<link name='{0}'/><joint name='{0}_joint' type='fixed'><origin rpy='0 0 {1}'/>"
+      "<parent link='base'/><child link='{0}'/></joint>{2}",
+      name, yaw,
+      has_sensor
+          ? fmt::format("<gazebo reference='{}'><sensor type='ray' name='s'/></gazebo>", name)
+          : "");
+}
+
+TEST(WriteProfileTest, OfSeveralLasersTheOneThatLooksAheadIsSuggested) {
+  struct Case {
+    std::string lasers, first;
+  };
+  const TemporaryFolder folder;
+  for (const Case& one : std::vector<Case>{
+           {LaserAt("laser_a", M_PI, false) + LaserAt("laser_b", 0.0, false), "laser_b"},
+           {LaserAt("laser_a", M_PI, true) + LaserAt("laser_b", 0.1, true), "laser_b"},
+           {LaserAt("laser_a", 0.0, true) + LaserAt("laser_b", 0.0, true), "laser_a"},
+           {LaserAt("back_laser", -2.36, true) + LaserAt("front_laser", 0.79, true), "front_laser"},
+           {LaserAt("back_laser", 0.0, true) + LaserAt("front_laser", 0.0, true), "front_laser"},
+           {LaserAt("laser_left", M_PI_2, true) + LaserAt("laser_ahead", 0.0, false),
+            "laser_left"}}) {
+    const std::string urdf = folder.Write(
+        "bot.urdf",
+        "<robot name='bot'><link name='base'><collision><geometry><box size='0.4 0.3 0.1'/>"
+        "</geometry></collision></link>" +
+            one.lasers + "</robot>");
+    const std::string key = "laser_link: " + one.first;
+    EXPECT_THAT(WriteProfile(urdf, folder.path().string()),
+                testing::ContainsRegex("laser_link: [\"']?" + one.first))
+        << one.lasers;
+    EXPECT_THAT(LoadRobotFromUrdf(urdf).assumed, Contains(HasSubstr("`" + key + "`")))
+        << one.lasers;
+  }
+}
+
 TEST(WriteProfileTest, ARobotWithoutShapesHasAFootprintToFillIn) {
   const TemporaryFolder folder;
   const std::string urdf = folder.Write(

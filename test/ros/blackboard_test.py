@@ -618,6 +618,8 @@ class BlackboardTest(unittest.TestCase):
                                 (['_store:=:memory:', '_knowledge:=/nowhere.yaml'], '/nowhere.yaml'),
                                 (['_store:=:memory:', '_topics:=/nowhere.yaml'], '/nowhere.yaml'),
                                 (['_durability:=paper'], '~durability'),
+                                (['_durability:=true'],
+                                 "~durability is true, wanted one of 'process', 'power'"),
                                 (['_threads:=0'], '~threads is 0')):
             with self.subTest(text=text):
                 node = self.start_node('__name:=wrong', *arguments)

@@ -105,6 +105,13 @@ class ImaginationBadInputTest(unittest.TestCase):
     def test_an_unknown_action_is_named_with_one_like_it(self):
         self.require_invalid(self.goal('move_bse_blind'), 'move_bse_blind', "'move_base_blind'")
 
+    def test_a_long_request_id_is_logged_in_short(self):
+        for goal in (self.goal(request_id='i' * 100000),
+                     self.goal('move_bse_blind', request_id='i' * 100000)):
+            self.ask(goal)
+        self.assertIn('i' * 1000, self.system.client.output())
+        self.assertNotIn('i' * 3000, self.system.client.output())
+
     def test_no_action_at_all(self):
         self.require_invalid(self.goal('', []), "action")
 

@@ -1,5 +1,6 @@
 #include "hires/ros/imagination/imagine_request.h"
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -10,6 +11,7 @@
 #include "hires/ros/robot/robot_state_messages.h"
 #include "hires/ros/values/failure_messages.h"
 #include "hires/ros/world/world_messages.h"
+#include "support/log_catcher.h"
 #include "support/messages.h"
 
 namespace hires_ros::imagine_request_test {
@@ -97,6 +99,50 @@ TEST(ImagineRequestTest, WhatAStateSaysInVainIsRefused) {
   goal.robot_state.postures.clear();
   goal.world_state.objects[0].name.clear();
   EXPECT_THAT(ErrorOf(goal), HasSubstr("world_state.objects[0].name is empty"));
+}
+
+TEST(ImagineRequestTest, WhatHangsOrLiesBelowTheFloorIsWarnedOf) {
+  const auto start =
+      imagination::MakeStartState(Restaurant(), "preManipulationAreaEastCounter1", {"peppermill1"});
+  const auto warnings = [&](double height) {
+    hires::ImagineGoal goal = Goal();
+    goal.updated_fluents.clear();
+    goal.request_id = std::string(100000, 'i');
+    goal.world_state = ToMsg(start.world);
+    goal.robot_state = ToMsg(start.robot);
+    hires::ObjectState& mill = goal.world_state.objects[0];
+    mill.pose.position.x += 2.0;  // off the tray
+    mill.pose.position.z = height;
+    const hires::test_support::LogCatcher log(hires::base::LogLevel::kWarn);
+    Request(goal);
+    std::vector<std::string> lines;
+    for (const std::string& line : log.lines)
+      if (line.find("world_state: ") != std::string::npos) lines.push_back(line);
+    return lines;
+  };
+  for (const auto& [height, why] :
+       {std::pair(5.0, "would hang"), std::pair(-5.0, "below the floor")}) {
+    const std::vector<std::string> lines = warnings(height);
+    ASSERT_EQ(lines.size(), 1u) << why;
+    EXPECT_THAT(lines[0], testing::AllOf(HasSubstr("'peppermill1'"), HasSubstr(why)));
+    EXPECT_LT(lines[0].size(), 5000u);
+  }
+}
+
+TEST(ImagineRequestTest, ARobotThatFliesIsRefused) {
+  hires::WorldState world;
+  world.header.frame_id = "map";
+  hires::RobotState robot;
+  for (const double height : {2.0, -2.0, 1e9}) {
+    robot.pose.position.z = height;
+    EXPECT_THAT(ConfigErrorOf([&] { RequireSoundState(world, robot); }),
+                HasSubstr("robot_state.pose.position.z is"));
+  }
+  for (const double height : {0.0, 0.05, -0.3}) {
+    robot.pose.position.z = height;
+    EXPECT_THAT(ConfigErrorOf([&] { RequireSoundState(world, robot); }),
+                HasSubstr("no ConfigError"));
+  }
 }
 
 TEST(ImagineRequestTest, AGoalWithoutAStartIsToldHowToGiveOne) {
@@ -370,8 +416,10 @@ TEST(ImagineRequestTest, WhatCannotBePlayedIsRefusedByName) {
   hires::ImagineGoal goal = Goal();
   goal.rollouts = 0;
   EXPECT_THAT(ErrorOf(goal), HasSubstr("rollouts"));
-  goal.rollouts = 4294967295u;
-  EXPECT_THAT(ErrorOf(goal), HasSubstr("rollouts"));
+  for (const std::uint32_t many : {100001u, 2147483648u, 4000000000u, 4294967295u}) {
+    goal.rollouts = many;
+    EXPECT_THAT(ErrorOf(goal), HasSubstr(fmt::format("rollouts is {}, wanted", many)));
+  }
   goal = Goal();
   goal.deadline = ros::Duration(-1.0);
   EXPECT_THAT(ErrorOf(goal), HasSubstr("deadline"));

@@ -447,6 +447,8 @@ class LocalisationTest(HearsEchoes, unittest.TestCase):
             self.assertIn('initialpose', self.dropped(node, words)['dropped last'])
         refuse("header.frame_id is 'odom', wanted 'map'", lambda m: setattr(m.header, 'frame_id', 'odom'))
         refuse('position is nan', lambda m: setattr(m.pose.pose.position, 'x', NAN))
+        refuse('x 500 m, y 1.8 m lies outside of the map, which reaches from x ',
+               lambda m: setattr(m.pose.pose.position, 'x', 500.0))
         refuse('has length 0, wanted 1', lambda m: setattr(m.pose.pose.orientation, 'w', 0.0))
         refuse('covariance', lambda m: m.pose.covariance.__setitem__(0, NAN))
         refuse('covariance', lambda m: m.pose.covariance.__setitem__(0, -1.0))

@@ -22,6 +22,10 @@ Bound<double> Positive();
 Bound<int> Between(int lower, int upper);
 Bound<std::string> OneOf(std::vector<std::string> choices);
 
+/// The word that fits among those that YAML reads as this bool: off, no or false, and on, yes or
+/// true. Nothing where none fits.
+std::optional<std::string> WordOf(bool value, const Bound<std::string>& bound);
+
 /// Reads one YAML map into parameter structs. Every key must be read and every key that is read
 /// must be there, so that a typo stops the program at start-up.
 /// All errors are base::ConfigError: "file: path.to.key is 7, wanted ...; line 12".

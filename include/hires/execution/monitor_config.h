@@ -38,6 +38,7 @@ struct MonitorConfig {
   double pose_angle{0.1};       ///< [rad] likewise
 };
 
+base::Bound<std::string> ImaginePolicyWord();
 /// "domain", "thesis", "off".  @throws base::ConfigError that names these.
 MonitorParams::ImaginePolicy ReadImaginePolicy(const std::string& word);
 

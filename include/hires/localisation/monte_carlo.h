@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <Eigen/Geometry>
 #include <memory>
 #include <string>
 #include <vector>
@@ -26,6 +27,10 @@ std::string ToString(LocalisationStatus status);  ///< a word for files and peop
 /// Why a robot cannot be localised in a map, whatever it sees: it has no free cell, or no occupied
 /// one. Empty: it may be.
 std::string WhyUseless(const world::OccupancyGrid& map);
+
+Eigen::AlignedBox2d ExtentOf(const world::OccupancyGrid& map);  ///< [m] of all cells, in the map
+/// Why nobody can be told to be there; empty: it lies in the map, or is no number, as SetPose says.
+std::string WhyOutside(const geometry::Pose2& X_MB, const Eigen::AlignedBox2d& extent);
 
 /// What the filter believes.
 struct PoseEstimate {

@@ -15,10 +15,8 @@ std::string ConfigOr(const std::string& standard) {
 }
 
 bool ReadNavigation(const hires::control::RobotNames& names) {
-  const std::string navigation = PrivateText("navigation").value_or("own");
-  if (navigation != "own" && navigation != "move_base") {
-    throw hires::base::ConfigError("~navigation is '" + navigation + "', wanted own or move_base");
-  }
+  const std::string navigation =
+      PrivateWord("navigation", hires::base::OneOf({"own", "move_base"})).value_or("own");
   if (navigation == "move_base" && names.move_base.action.empty()) {
     throw hires::base::ConfigError(
         "~navigation is 'move_base', but the file of names has no move_base/action; name it there "

@@ -128,12 +128,9 @@ knowledge::BlackboardConfig LoadBlackboardParams() {
       path && !path->empty() ? *path : ros::package::getPath("hires") + "/config/blackboard.yaml");
   const auto store = PrivateText("store");
   if (store && !store->empty()) config.store = knowledge::ExpandHome(*store);
-  const auto durability = PrivateText("durability");
-  if (durability && !durability->empty()) {
-    std::string word;
-    Override("durability", durability, hires::base::OneOf({"process", "power"}), &word);
+  if (const auto word = PrivateWord("durability", hires::base::OneOf({"process", "power"}))) {
     config.options.durability =
-        word == "power" ? knowledge::Durability::kPower : knowledge::Durability::kProcess;
+        *word == "power" ? knowledge::Durability::kPower : knowledge::Durability::kProcess;
   }
   if (const auto files = PrivateWords("knowledge"); files && !files->empty()) {
     config.knowledge = *files;

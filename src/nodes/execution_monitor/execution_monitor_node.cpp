@@ -77,10 +77,8 @@ execution::MonitorConfig LoadExecutionMonitorParams() {
   if (domain && !domain->empty()) config.domain = *domain;
   const auto operators = PrivateText("operators");
   if (operators && !operators->empty()) config.operators = *operators;
-  const auto imagination = PrivateText("imagination");
-  if (imagination && !imagination->empty()) {
-    config.monitor.imagination = execution::ReadImaginePolicy(*imagination);
-  }
+  if (const auto word = PrivateWord("imagination", execution::ImaginePolicyWord()))
+    config.monitor.imagination = execution::ReadImaginePolicy(*word);
   config.monitor.dry_run = PrivateBool("dry_run").value_or(config.monitor.dry_run);
   int seed = static_cast<int>(config.imagining.seed);
   Override("seed", PrivateInt("seed"), hires::base::Between(0, 2'147'483'647), &seed);

@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "hires/base/error.h"
+#include "hires/base/short_text.h"
 #include "hires/base/text.h"
 
 namespace hires_ros {
@@ -123,7 +124,7 @@ std::string WithoutResult(const std::string& action, const std::string& id,
   return fmt::format(
       "goal {} of {} (request '{}') has no result, because {}; record {}/goal and {}/result until "
       "all results have come",
-      id, action, goal.request_id,
+      id, action, hires::base::Shortened(goal.request_id),
       has_topic ? "the recording ended before it" : fmt::format("{}/result is missing", action),
       action, action);
 }

@@ -20,6 +20,7 @@
 #include "cli/whole_number.h"
 #include "hires/base/error.h"
 #include "hires/base/progress.h"
+#include "hires/base/short_text.h"
 #include "hires/base/text.h"
 #include "hires/imagination/local_imagination.h"
 #include "hires/imagination/local_setup.h"
@@ -404,7 +405,7 @@ std::string ReplayText(const ReplayedRequest& replayed) {
   return fmt::format(
              "request '{}' ({}, goal id {}): {} of at most {} rollouts each, seed {}\n"
              "outcome: {} then, {} now\n",
-             recorded.goal.request_id, recorded.action, recorded.goal_id,
+             hires::base::Shortened(recorded.goal.request_id), recorded.action, recorded.goal_id,
              ActionNameOf(recorded.goal), recorded.goal.rollouts, recorded.goal.seed,
              OutcomeText(recorded.result.outcome), OutcomeText(replayed.now.outcome)) +
          RankingsText(recorded.result, replayed.now) + VerdictText(replayed);

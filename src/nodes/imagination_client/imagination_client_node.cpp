@@ -123,7 +123,8 @@ ImaginationClientNode::~ImaginationClientNode() {
 
 void ImaginationClientNode::Refuse(GoalHandle goal, const std::string& why) {
   hires::base::Log(hires::base::LogLevel::kWarn,
-                   fmt::format("request={} outcome=invalid {}", goal.getGoal()->request_id, why));
+                   fmt::format("request={} outcome=invalid {}",
+                               hires::base::Shortened(goal.getGoal()->request_id), why));
   askers_.Forget(goal.getGoalID().id);
   goal.setAborted(RefusalOf(*goal.getGoal(), why), why);
 }
@@ -141,9 +142,9 @@ void ImaginationClientNode::OnGoal(GoalHandle goal) {
   hires::base::Log(
       hires::base::LogLevel::kInfo,
       fmt::format("request={} session={} action={} alternatives={} rollouts={} seed={}",
-                  goal.getGoal()->request_id, session->id, session->request->actions[0].name,
-                  session->request->actions.size(), session->request->params.rollouts,
-                  goal.getGoal()->seed));
+                  hires::base::Shortened(goal.getGoal()->request_id), session->id,
+                  session->request->actions[0].name, session->request->actions.size(),
+                  session->request->params.rollouts, goal.getGoal()->seed));
   // At the moment of the start: a worker that is there then is in time for any deadline.
   for (const auto& [k, worker] : workers_) {
     if (!worker->is_alive()) continue;

@@ -139,6 +139,7 @@ void LocalisationNode::BeginWith(const hires::world::OccupancyGrid& map) {
     before = UncertainPose{estimate.X_MB, estimate.covariance};
   }
   filter_.emplace(map, params_.config.filter, hires::base::Rng(params_.seed));
+  extent_ = localisation::ExtentOf(map);
   is_updated_ = false;
   hires::base::Log(LogLevel::kInfo, fmt::format("map=used width={} height={} resolution={:g}",
                                                 map.width, map.height, map.resolution));
@@ -159,21 +160,28 @@ void LocalisationNode::OnInitialPose(const geometry_msgs::PoseWithCovarianceStam
   }
   try {
     const UncertainPose pose = hires_ros::FromMsg(msg.pose);
-    kept_.reset();
-    if (filter_) {
-      SetPose(pose);
-    } else {
+    if (!filter_) {
       told_ = pose;
+    } else if (!SetPose(pose)) {
+      return;
     }
+    kept_.reset();
   } catch (const ConfigError& error) {
     Refuse(kInitialPose, error.what());
   }
 }
 
-void LocalisationNode::SetPose(const UncertainPose& pose) {
+/// False: it is none of that map.
+bool LocalisationNode::SetPose(const UncertainPose& pose) {
+  const std::string why = localisation::WhyOutside(pose.X_AB, extent_);
+  if (!why.empty()) {
+    Refuse(kInitialPose, why);
+    return false;
+  }
   filter_->SetPose(pose.X_AB, pose.covariance);
   hires::base::Log(LogLevel::kInfo, fmt::format("pose=set x={:.3f} y={:.3f} yaw={:.3f}",
                                                 pose.X_AB.x, pose.X_AB.y, pose.X_AB.yaw));
+  return true;
 }
 
 bool LocalisationNode::OnGlobalLocalisation(Empty::Request&, Empty::Response&) {

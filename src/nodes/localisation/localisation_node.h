@@ -42,7 +42,7 @@ class LocalisationNode {
   void BeginWith(const hires::world::OccupancyGrid& map);
   void AskForMap();  ///< where none was latched
   void OnInitialPose(const geometry_msgs::PoseWithCovarianceStamped& msg);
-  void SetPose(const UncertainPose& pose);
+  bool SetPose(const UncertainPose& pose);
   bool OnGlobalLocalisation(Empty::Request& request, Empty::Response& response);
   bool OnNoMotionUpdate(Empty::Request& request, Empty::Response& response);
 
@@ -67,6 +67,7 @@ class LocalisationNode {
   MapRequest map_server_;
   std::optional<nav_msgs::OccupancyGrid> map_;                         // that is used
   std::optional<hires::localisation::MonteCarloLocalisation> filter_;  // once there is a map
+  Eigen::AlignedBox2d extent_;                                         // of that map
   std::optional<UncertainPose> told_;  // the pose, before there was a map
   std::optional<KeptPlace> kept_;      // of a process before, until something is used
   PoseKeeper keeper_;

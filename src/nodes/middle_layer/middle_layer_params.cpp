@@ -63,7 +63,7 @@ MiddleLayerParams LoadMiddleLayerParams() {
                         "guard", "navigation", "dry_run", "action_libraries"});
   MiddleLayerParams params = Read(
       PrivateText("config").value_or(ros::package::getPath("hires") + "/config/middle_layer.yaml"),
-      PrivateBool("guard"), PrivateText("navigation"));
+      PrivateBool("guard"), PrivateWord("navigation", hires::base::OneOf({"own", "move_base"})));
   hires::imagination::OverridePaths(PrivateText("world"), PrivateText("robot"),
                                     PrivateText("objects"), std::nullopt, &params.setup);
   params.setup.action_libraries = PrivateActionLibraries();

@@ -44,11 +44,7 @@ void PlayRobot(ros::NodeHandle* nh) {
 
 /// A worker plays rollouts under a master of its own; the robot is the one that is real to the
 /// rest.
-bool IsRobot() {
-  std::string role = "worker";
-  Override("role", PrivateText("role"), hires::base::OneOf({"worker", "robot"}), &role);
-  return role == "robot";
-}
+bool IsRobot() { return PrivateWord("role", hires::base::OneOf({"worker", "robot"})) == "robot"; }
 
 }  // namespace
 

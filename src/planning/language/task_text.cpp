@@ -3,13 +3,33 @@
 #include <fmt/format.h>
 
 #include "hires/base/error.h"
+#include "hires/base/short_text.h"
 #include "hires/base/text.h"
 #include "hires/planning/datum_reader.h"
 #include "hires/planning/shop2_reader.h"
 
 namespace hires::planning {
 
+namespace {
+
+/// "serve(guest1)" would be a task whose one argument is a list, which no method takes.
+void RefuseCall(std::string_view text, const std::string& source) {
+  const std::size_t begin = text.find_first_not_of(" \t\r\n");
+  const std::size_t open = text.find_first_of(" \t\r\n;(", begin);
+  if (begin >= open || open == std::string_view::npos || text[open] != '(') return;
+  std::string words(text.substr(begin, text.find(')', open) - begin));
+  for (char& c : words)
+    if (c == '(' || c == ',') c = ' ';
+  throw base::ConfigError(
+      fmt::format("{}: '{}' is written as a call; write the task and its arguments: {}", source,
+                  base::Shortened(std::string(text)),
+                  base::Shortened(base::Join(base::SplitWords(words), " "))));
+}
+
+}  // namespace
+
 TaskNetwork ReadTasks(std::string_view text, const std::string& source) {
+  RefuseCall(text, source);
   std::vector<Datum> data = ReadData(text, source);
   if (data.empty()) {
     throw base::ConfigError(fmt::format(

@@ -108,7 +108,7 @@ void AddTray(const RobotProfile& profile, LineWriter* out) {
 }
 
 void AddLaser(const Robot& robot, const std::string& xml, LineWriter* out) {
-  const std::vector<std::string> links = LaserLinks(robot.model, xml);
+  const std::vector<std::string> links = LaserLinks(robot, xml);
   out->AddAssumed("laser_link: " + InQuotes(links.empty() ? "" : links.front()),
                   links.empty()
                       ? "link of a planar laser; none is known, so it drives by the map alone"

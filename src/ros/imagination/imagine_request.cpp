@@ -2,11 +2,11 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <memory>
 
 #include "hires/base/error.h"
 #include "hires/base/hash.h"
+#include "hires/base/log.h"
 #include "hires/base/short_text.h"
 #include "hires/imagination/uncertainty.h"
 #include "hires/ros/answer/report_messages.h"
@@ -14,6 +14,7 @@
 #include "hires/ros/values/action_messages.h"
 #include "hires/ros/values/atom_messages.h"
 #include "hires/ros/world/world_messages.h"
+#include "imagination/object_support.h"
 #include "imagination/uncertainty_layers.h"
 
 namespace hires_ros {
@@ -67,14 +68,30 @@ hires::base::ActionTemplate StepOf(const hires::ImagineGoal& goal) {
 
 imagination::SchedulerParams ParamsOf(const hires::ImagineGoal& goal,
                                       const imagination::SchedulerParams& defaults) {
+  if (goal.rollouts > static_cast<std::uint32_t>(imagination::kMostRollouts)) {
+    throw hires::base::ConfigError(fmt::format("rollouts is {}, wanted between 1 and {}",
+                                               goal.rollouts, imagination::kMostRollouts));
+  }
   imagination::SchedulerParams params = defaults;
-  params.rollouts = static_cast<int>(std::min<std::uint32_t>(goal.rollouts, 1u << 30));
+  params.rollouts = static_cast<int>(goal.rollouts);
   params.deadline = goal.deadline.toSec();
   params.early_stop = !goal.play_all && defaults.early_stop;
   if (goal.min_success != 0.0) params.criteria.min_success = goal.min_success;
   if (!goal.ranking.empty()) params.criteria.rule = imagination::ParseRankingRule(goal.ranking);
   imagination::CheckParams(params);
   return params;
+}
+
+/// Of a state that was observed it may be true, as far as it was seen.
+void WarnOfUnsupported(const hires::ImagineGoal& goal, const imagination::RolloutSetup& setup) {
+  std::vector<std::string> objects;
+  for (const hires::world::ObjectState& object : setup.world_state.objects)
+    objects.push_back(object.name);
+  for (const std::string& why : imagination::WhyUnsupported(objects, setup)) {
+    hires::base::Log(
+        hires::base::LogLevel::kWarn,
+        fmt::format("request={} world_state: {}", hires::base::Shortened(goal.request_id), why));
+  }
 }
 
 /// What all rollouts of a request have in common.
@@ -105,6 +122,7 @@ ImagineRequest RequestOf(const hires::ImagineGoal& goal, const imagination::Imag
   request.params = ParamsOf(goal, defaults);
   request.params.criteria.prices.time_limit = request.setup.params.time_limit;
   imagination::CheckSetupForAll(request.setup, request.actions);
+  if (goal.updated_fluents.empty()) WarnOfUnsupported(goal, request.setup);
   return request;
 }
 

@@ -21,9 +21,13 @@ std::optional<XmlRpcValue> PrivateValue(const std::string& key) {
   return value;
 }
 
-[[noreturn]] void Fail(const std::string& key, const XmlRpcValue& value, const char* wanted) {
+[[noreturn]] void Fail(const std::string& key, XmlRpcValue value, const std::string& wanted) {
   std::ostringstream text;
-  value.write(text);
+  if (value.getType() == XmlRpcValue::TypeBoolean) {
+    text << std::boolalpha << static_cast<bool>(value);  // the library would write 1
+  } else {
+    value.write(text);
+  }
   throw ConfigError(fmt::format("~{} is {}, wanted {}", key, text.str(), wanted));
 }
 
@@ -34,6 +38,21 @@ std::optional<std::string> PrivateText(const std::string& key) {
   if (!value) return std::nullopt;
   if (value->getType() != XmlRpcValue::TypeString) Fail(key, *value, "text");
   return static_cast<std::string>(*value);
+}
+
+std::optional<std::string> PrivateWord(const std::string& key,
+                                       const hires::base::Bound<std::string>& bound) {
+  auto value = PrivateValue(key);
+  if (!value) return std::nullopt;
+  std::optional<std::string> word;
+  if (value->getType() == XmlRpcValue::TypeString) {
+    word = static_cast<std::string>(*value);
+    if (word->empty()) return std::nullopt;
+  } else if (value->getType() == XmlRpcValue::TypeBoolean) {
+    word = hires::base::WordOf(static_cast<bool>(*value), bound);
+  }
+  if (!word || !bound.holds(*word)) Fail(key, *value, bound.wanted);
+  return word;
 }
 
 std::optional<int> PrivateInt(const std::string& key) {

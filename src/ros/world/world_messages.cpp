@@ -65,6 +65,14 @@ void RequireSoundState(const msg::WorldState& world, const msg::RobotState& robo
                     "updated_fluents instead of a state",
                     world.header.frame_id));
   }
+  constexpr double kHighestBase = 1.0;  // [m] over the floor, where its base link may lie
+  const double height = robot.pose.position.z;
+  if (!(std::abs(height) <= kHighestBase)) {
+    throw hires::base::ConfigError(
+        fmt::format("robot_state.pose.position.z is {:.6g} m, wanted about 0: robots drive on the "
+                    "floor z = 0 of the map",
+                    height));
+  }
   const hires::geometry::Twist3 twist = FromTwistMsg(robot.twist);
   if (!twist.linear.allFinite() || !twist.angular.allFinite()) {
     throw hires::base::ConfigError("robot_state.twist is not finite; give numbers, 0 at rest");

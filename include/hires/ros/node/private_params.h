@@ -14,6 +14,10 @@ namespace hires_ros {
 /// Private parameters of this node. All errors are hires::base::ConfigError: "~index is 300,
 /// wanted ...".
 std::optional<std::string> PrivateText(const std::string& key);
+/// One that fits; nothing where it is empty. `rosparam` and launch files may have made a bool of
+/// it, as of off.
+std::optional<std::string> PrivateWord(const std::string& key,
+                                       const hires::base::Bound<std::string>& bound);
 std::optional<int> PrivateInt(const std::string& key);
 std::optional<double> PrivateNumber(const std::string& key);  ///< whole numbers too
 std::optional<bool> PrivateBool(const std::string& key);

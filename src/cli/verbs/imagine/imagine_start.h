@@ -64,11 +64,4 @@ void RequireObjects(const actions::Catalogue& catalogue,
 /// @throws base::ConfigError for a posture of a robot that has none.
 void RequirePostures(const ImagineStart& start, const robot::Robot& robot);
 
-/// What is put by numbers in the map stands on the floor, on what stands or lies there, or on the
-/// robot, or would fall and be told as knocked over. Whatever is round a place counts as bearing.
-/// @param X_MB  where the robot begins, with all that is within `reach` [m] of it.
-/// @throws base::ConfigError saying how high it would hang, and over what.
-void RequireSupport(const std::vector<imagination::PutObject>& put, const world::WorldState& state,
-                    const world::World& world, const geometry::Pose2& X_MB, double reach);
-
 }  // namespace hires::cli

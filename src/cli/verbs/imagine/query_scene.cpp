@@ -7,8 +7,10 @@
 
 #include "hires/base/error.h"
 #include "hires/base/short_text.h"
+#include "hires/base/text.h"
 #include "hires/imagination/local_imagination.h"
 #include "hires/skills/skill_factory.h"
+#include "imagination/object_support.h"
 
 namespace hires::cli {
 
@@ -46,17 +48,27 @@ void RequireNames(const ImagineQuery& query, QueryScene* scene) {
   if (!problems.empty()) throw base::ConfigError(base::AllThatIsWrong("the question", problems));
 }
 
+namespace {
+
+/// Of what is put by numbers in the map.
+void RequireSupport(const std::vector<imagination::PutObject>& put,
+                    const imagination::RolloutSetup& rollouts) {
+  std::vector<std::string> objects;
+  for (const imagination::PutObject& one : put)
+    if (one.area.empty()) objects.push_back(one.object);
+  const std::vector<std::string> why = imagination::WhyUnsupported(objects, rollouts);
+  if (!why.empty()) throw base::ConfigError("--put: " + base::Join(why, "; "));
+}
+
+}  // namespace
+
 imagination::Report ImagineInThisProcess(const ImagineQuery& query, QueryScene* scene,
                                          const imagination::OnInterim& on_interim,
                                          const std::function<bool()>& cancelled) {
   const std::vector<base::ActionCall> actions = base::Combinations(query.action);
   const imagination::RolloutSetup& rollouts = scene->rollouts();
   RequireObjects(rollouts.skills->actions->catalogue(), actions, rollouts.world_state);
-  constexpr double kBesideRobot = 0.1;  // [m]
-  const simulation::Scene& scene_of_all = *rollouts.scene;
-  RequireSupport(
-      query.start.put, rollouts.world_state, scene_of_all.world, rollouts.robot_state.X_MB,
-      kBesideRobot + geometry::CircumscribedRadius(scene_of_all.robot.profile.footprint));
+  RequireSupport(query.start.put, rollouts);
   imagination::Report report = imagination::ImagineLocally(rollouts, actions, query.scheduler,
                                                            query.threads, on_interim, cancelled);
   imagination::AddCaveats(rollouts, actions, query.validated, &report);
