@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "lab/src/experience/separation.h"
+#include "lab/src/interval_json.h"
 #include "reports/text/known_number.h"
 
 namespace hires::lab {

@@ -6,7 +6,7 @@
 
 #include "lab/src/experience/filters.h"
 #include "lab/src/experience/separation.h"
-#include "reports/text/known_number.h"
+#include "lab/src/interval_json.h"
 
 namespace hires::lab {
 namespace {

@@ -10,6 +10,7 @@
 #include "hires/base/error.h"
 #include "hires/base/hash.h"
 #include "hires/base/text.h"
+#include "lab/src/interval_json.h"
 #include "reports/text/known_number.h"
 #include "reports/text/report_table.h"
 

@@ -37,7 +37,7 @@ std::vector<int> ChildrenOf(int pid) {
 }
 
 void SetName(const std::string& command_line, Descendant* descendant) {
-  for (const std::string& word : Split(command_line, '\0')) {
+  for (const std::string& word : base::Split(command_line, '\0')) {
     if (descendant->name.empty()) descendant->name = fs::path(word).filename().string();
     if (word.rfind(kNodeName, 0) != 0) continue;
     descendant->name = word.substr(sizeof(kNodeName) - 1);
