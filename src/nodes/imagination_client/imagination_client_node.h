@@ -102,7 +102,7 @@ class ImaginationClientNode {
   hires::imagination::KeptRollouts kept_;
   int next_session_{1};
   std::optional<hires::imagination::BelievedPose> believed_;
-  std::string believed_frame_;  // of its message
+  std::string believed_frame_{"map"};  // of its message
   hires::base::TopicWarnings topic_warnings_;
   Server server_;
   AskerWatch askers_;
