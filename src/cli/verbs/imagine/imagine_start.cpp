@@ -11,6 +11,7 @@
 #include <set>
 #include <utility>
 
+#include "cli/radians.h"
 #include "hires/base/error.h"
 #include "hires/base/text.h"
 #include "imagination/area_file.h"
@@ -40,13 +41,6 @@ std::vector<double> NumbersIn(const std::string& text) {
     if (used != part.size() || !std::isfinite(numbers.back())) return {};
   }
   return numbers;
-}
-
-void RefuseDegrees(const std::string& option, const std::string& text, double yaw) {
-  if (std::abs(yaw) <= 2.0 * M_PI) return;
-  throw base::ConfigError(fmt::format(
-      "{} '{}': yaw is in radians, wanted between -2 pi and 2 pi; {:g} degrees are {:.5g}", option,
-      text, yaw, yaw * M_PI / 180.0));
 }
 
 /// A name that comes again would be one thing, where two were meant.
