@@ -242,8 +242,8 @@ void RequireSupport(const std::vector<imagination::PutObject>& put, const world:
 void AddStartOptions(CLI::App* app, StartOptions* o) {
   app->add_option("--from", o->from, "area where the robot stands")->required();
   app->add_option("--object", o->on_tray,
-                  "what stands on its tray: instance, model, or file (.sdf, .urdf, .yaml); may be "
-                  "repeated")
+                  "what stands on its tray: instance, model, or file (.sdf, .urdf, .yaml); up to "
+                  "three times")
       ->allow_extra_args(false);
   app->add_option("--object-in-hand", o->in_hand,
                   "OBJECT:ARM, what an arm holds, named as for --object: mug1:rightArm1")
