@@ -48,7 +48,7 @@ struct ClusterSums {
 };
 
 /// @return of clusters that are not empty.
-ClusterSums SumsOf(const std::vector<ClusterCounts>& clusters) {
+ClusterSums ClusterSumsOf(const std::vector<ClusterCounts>& clusters) {
   ClusterSums sums;
   for (const auto& [num_hits, num_all] : clusters) {
     HIRES_CHECK(num_hits >= 0 && num_hits <= num_all,
@@ -191,7 +191,7 @@ ClusterCounts SumOf(const std::vector<ClusterCounts>& clusters) {
 }
 
 Interval ClusteredShareInterval(const std::vector<ClusterCounts>& clusters) {
-  const ClusterSums sums = SumsOf(clusters);
+  const ClusterSums sums = ClusterSumsOf(clusters);
   if (sums.cases == 0.0) return {0.0, 0.0, 1.0};
   const double cases = IndependentCases(clusters, sums);
   Interval interval = ExactShare(std::min(1.0, sums.share()) * cases, cases);

@@ -11,6 +11,9 @@
 namespace hires::lab::process_watch_test {
 namespace {
 
+using base::ChildProcess;
+using base::ProcessOptions;
+using base::SteadyNow;
 using ::testing::HasSubstr;
 using ::testing::Optional;
 

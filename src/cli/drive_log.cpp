@@ -10,6 +10,7 @@
 #include <sstream>
 #include <vector>
 
+#include "cli/radians.h"
 #include "hires/base/error.h"
 #include "hires/base/log.h"
 #include "hires/base/text.h"
@@ -144,11 +145,7 @@ geometry::Pose2 PoseIn(const std::string& text, const std::string& option,
     throw base::ConfigError(
         fmt::format("{} '{}': has {} numbers; {}", option, text, numbers.size(), wanted));
   }
-  if (std::abs(numbers[2]) > 2.0 * M_PI) {
-    throw base::ConfigError(fmt::format(
-        "{} '{}': yaw is in radians, wanted between -2 pi and 2 pi; {:g} degrees are {:.5g}",
-        option, text, numbers[2], numbers[2] * M_PI / 180.0));
-  }
+  RefuseDegrees(option, text, numbers[2]);
   return {numbers[0], numbers[1], numbers[2]};
 }
 

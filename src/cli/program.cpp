@@ -146,7 +146,8 @@ void RefuseEmptyValues(const CLI::App& app) {
     const bool is_empty = std::any_of(values.begin(), values.end(), [](const std::string& value) {
       return value.find_first_not_of(" \t\n\r") == std::string::npos;
     });
-    if (is_empty) empty.push_back(option->get_name());
+    const bool may_be_bare = option->get_items_expected_min() == 0;  // CLI11 then takes ""
+    if (is_empty && !may_be_bare) empty.push_back(option->get_name());
   }
   if (!empty.empty()) {
     throw base::ConfigError(fmt::format(

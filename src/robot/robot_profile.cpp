@@ -506,6 +506,21 @@ bool IsOfUpperBody(const Robot& robot, int link) {
   });
 }
 
+/// Of a profile, which is named where it is not there.
+UrdfFile UrdfIn(const ParamReader& in, const std::string& profile_path,
+                const RobotProfile& profile) {
+  UrdfFile urdf;
+  try {
+    urdf = UrdfOf(profile_path, profile);
+  } catch (const base::ConfigError& error) {
+    in.Fail("urdf", error.what());
+  }
+  if (std::filesystem::exists(urdf.path)) return urdf;
+  in.Fail("urdf", fmt::format("wanted a file that is there, but {} is not; write its path as seen "
+                              "from the profile's folder",
+                              urdf.path));
+}
+
 /// " (they lie 50 m to 505 m above it, as if their unit were not the metre)": where the shapes are
 /// of a robot of which none is low enough; "" where it has none.
 std::string HeightsText(const RobotModel& model, const std::string& base_link,
@@ -555,21 +570,6 @@ std::uint64_t Robot::hash() const {
   hash.Add(model.hash);
   hash.Add(profile.hash);
   return hash.value();
-}
-
-/// Of a profile, which is named where it is not there.
-UrdfFile UrdfIn(const ParamReader& in, const std::string& profile_path,
-                const RobotProfile& profile) {
-  UrdfFile urdf;
-  try {
-    urdf = UrdfOf(profile_path, profile);
-  } catch (const base::ConfigError& error) {
-    in.Fail("urdf", error.what());
-  }
-  if (std::filesystem::exists(urdf.path)) return urdf;
-  in.Fail("urdf", fmt::format("wanted a file that is there, but {} is not; write its path as seen "
-                              "from the profile's folder",
-                              urdf.path));
 }
 
 Robot LoadRobot(const std::string& profile_path) {

@@ -226,6 +226,16 @@ TEST(HddlMethodTest, AListOfListsIsAConjunction) {
   EXPECT_THAT(network.order, ElementsAre(Pair(0, 1)));
 }
 
+TEST(HddlMethodTest, ADeclaredPredicateMayBeCalledAsAComparison) {
+  for (const std::string name : {"<", ">", "<=", ">="}) {
+    const Domain domain = ReadHddlDomain("(define (domain d) (:predicates (" + name +
+                                             " ?a ?b)) (:action a :parameters (?a ?b) " +
+                                             ":precondition (" + name + " ?a ?b)))",
+                                         "d.hddl");
+    EXPECT_THAT(Text(domain.operators.at(0).precondition.condition), HasSubstr(name + " ?a ?b"));
+  }
+}
+
 TEST(HddlMethodTest, OrderedSubtasksFollowOneAnother) {
   const Domain domain = World(R"(
     (:method a :parameters () :task (go dock)
@@ -440,7 +450,6 @@ TEST(HddlProblemTest, ValuesOfFunctionsAreFacts) {
               ElementsAre("(%value-far dock t1 10)", "(%value-far t1 s1 2.5)"));
 }
 
-// Several domains of the competition name directions that only their problems declare.
 TEST(HddlTypesTest, WhatTheReaderMadeIsShownAsHddlHasIt) {
   const auto as_written = [](const std::string& predicate, const std::vector<Datum>& arguments) {
     std::vector<Datum> items{MakeSymbol(predicate)};
@@ -454,6 +463,7 @@ TEST(HddlTypesTest, WhatTheReaderMadeIsShownAsHddlHasIt) {
   EXPECT_EQ(as_written("at", {dock}), "(at dock)");
 }
 
+// Several domains of the competition name directions that only their problems declare.
 TEST(HddlProblemTest, ObjectsOfTheDomainMayBeLeftToTheProblem) {
   const Domain domain = World("(:method m :task (go mars) :precondition (at moon))");
   const auto read = [&domain](const std::string& objects) -> std::string {

@@ -155,7 +155,7 @@ class ImaginationBadInputTest(unittest.TestCase):
         self.assertIn('topic=/where awaited why=nothing came yet', self.system.client.output())
         publisher = self.rospy.Publisher('where', PoseWithCovarianceStamped, queue_size=10)
         wait_until(publisher.get_num_connections, 'the client')
-        for field, value, text in (('position.y', NAN, 'dropped why=pose.pose.position is not finite'),
+        for field, value, text in (('position.y', NAN, 'dropped why=pose.pose.position is 0, nan'),
                                    ('orientation.w', 0.0, 'dropped why=pose.pose.orientation has length 0'),
                                    ('position.x', 100.0, "taken for a pose in the map why=header.frame_id is 'odom'")):
             pose = PoseWithCovarianceStamped()
@@ -163,9 +163,9 @@ class ImaginationBadInputTest(unittest.TestCase):
             pose.pose.pose.orientation.w = 1.0
             part, member = field.split('.')
             setattr(getattr(pose.pose.pose, part), member, value)
-            publisher.publish(pose)
-            self.system.client.wait_for('topic=/?where ' + text)
             self.rospy.sleep(1.1)  # a topic is warned of once a second
+            publisher.publish(pose)
+            self.system.client.wait_for('topic=/where ' + text)
 
     # The state.
 

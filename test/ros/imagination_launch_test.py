@@ -69,7 +69,6 @@ class ImaginationLaunchTest(LaunchCase):
         self.assertEqual(launch.wait(), 0)
         wait_until(lambda: not imagination.system.alive(), 'all processes to end', 2.0)
 
-
     def test_two_of_one_master_have_workers_of_their_own_also_of_files_with_blanks_in_their_names(self):
         (imagination,) = self.launches(1)
         system = imagination.system

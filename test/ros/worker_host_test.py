@@ -225,6 +225,14 @@ class WorkerHostTest(Family, unittest.TestCase):
         with open('/proc/%d/cmdline' % pid) as file:
             self.assertIn('__log:=/worker_1.log', file.read().split('\0'))
 
+    def test_worker_and_relay_are_in_the_namespace_of_their_host_however_it_got_it(self):
+        host = self.start_host('__ns:=hall')
+        self.wait_until_ready(host)
+        wait_until(lambda: self.main.publishers('/hall/worker_1/state'), "the worker's state to cross")
+        for kind in ('relay_test_peer', 'relay'):
+            with open('/proc/%d/environ' % self.children()[kind]) as file:
+                self.assertIn('ROS_NAMESPACE=/hall', file.read().split('\0'))
+
     def test_a_worker_ends_when_the_main_master_is_gone_for_good(self):
         host = self.start_host(main_master_timeout=1.0)
         self.wait_until_ready(host)

@@ -165,8 +165,6 @@ robot::Robot WithRootAskew(double length, double width, double askew) {
   return robot;
 }
 
-// What is wider than a door by a few mm is said to be, with both widths; what has two cells to
-// spare at each side finds its way.
 /// With a bed far to one side: what a round robot would stand clear of, the bed reaches into.
 robot::Robot WithBed(double length, double yaw) {
   robot::Robot robot = TrayRobot();
@@ -205,6 +203,8 @@ TEST(WayBlockedTest, AGoalAtWhichOnlyTheHeadingIsWrongSaysWhatReachesIntoWhat) {
   }
 }
 
+// What is wider than a door by a few mm is said to be, with both widths; what has two cells to
+// spare at each side finds its way.
 TEST(WayBlockedTest, WhatIsSaidOfADoorAgreesWithWhetherTheFootprintFits) {
   base::Rng rng(15);
   int num_wider = 0;

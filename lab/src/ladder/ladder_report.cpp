@@ -3,6 +3,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "lab/src/interval_json.h"
 #include "lab/src/ladder/ladder.h"
 #include "lab/src/interval_json.h"
 #include "reports/text/known_number.h"

@@ -3,6 +3,7 @@
 #include <functional>
 #include <nlohmann/json.hpp>
 
+#include "lab/src/interval_json.h"
 #include "lab/src/recognition/torso_poses.h"
 #include "lab/src/statistics.h"
 #include "lab/src/interval_json.h"

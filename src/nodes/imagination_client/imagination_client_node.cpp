@@ -4,7 +4,6 @@
 #include <ros/package.h>
 #include <visualization_msgs/MarkerArray.h>
 
-#include <cmath>
 #include <cstdlib>
 #include <deque>
 
@@ -174,29 +173,26 @@ std::unique_ptr<ImaginationClientNode::Session> ImaginationClientNode::MakeSessi
 }
 
 void ImaginationClientNode::OnLocalisation(const geometry_msgs::PoseWithCovarianceStamped& msg) {
-  const geometry_msgs::Point& position = msg.pose.pose.position;
+  const std::string topic = localisation_.getTopic();
+  UncertainPose pose;
   try {
-    if (!std::isfinite(position.x) || !std::isfinite(position.y))
-      throw hires::base::ConfigError("pose.pose.position is not finite, wanted numbers [m]");
-    RequireRotation(msg.pose.pose.orientation, "pose.pose.orientation");
+    pose = FromMsg(msg.pose);
   } catch (const hires::base::ConfigError& error) {
-    topic_warnings_.Tell(params_.localisation, "dropped", error.what());
+    topic_warnings_.Tell(topic, "dropped", error.what());
     return;
   }
   const std::string& frame = msg.header.frame_id;
   if (frame != "map" && frame != "/map" && frame != believed_frame_) {  // each said once
-    topic_warnings_.Tell(params_.localisation, "taken for a pose in the map",
+    topic_warnings_.Tell(topic, "taken for a pose in the map",
                          fmt::format("header.frame_id is '{}'", frame));
   }
   believed_frame_ = frame;
-  const auto& c = msg.pose.covariance;  // row by row: x, y, z, and about x, y, z
   imagination::BelievedPose believed;
-  believed.X_MB = params_.map_to_world.ToWorld(hires::geometry::Flatten(FromMsg(msg.pose.pose)));
-  believed.covariance << c[0], c[1], c[5], c[6], c[7], c[11], c[30], c[31], c[35];
+  believed.X_MB = params_.map_to_world.ToWorld(pose.X_AB);
   const double turn = params_.map_to_world.X_WM.yaw, scale = params_.map_to_world.scale;
   Eigen::Matrix3d R_WM = Eigen::Matrix3d::Identity();
   R_WM.topLeftCorner<2, 2>() = scale * Eigen::Rotation2Dd(turn).toRotationMatrix();
-  believed.covariance = R_WM * believed.covariance * R_WM.transpose();
+  believed.covariance = R_WM * pose.covariance * R_WM.transpose();
   believed_ = believed;
 }
 

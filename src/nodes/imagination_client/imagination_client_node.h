@@ -32,7 +32,7 @@ namespace hires_ros {
 struct ImaginationClientParams {
   hires::imagination::ClientConfig config;
   hires::imagination::SetupConfig setup;
-  int num_workers{1};  ///< /worker_1 .. /worker_n may come and go
+  int num_workers{1};  ///< worker_1 .. worker_n may come and go
   /// Topic (geometry_msgs/PoseWithCovarianceStamped) that tells where the robot stands and how sure
   /// that is: the spread of start poses of what begins there. Empty: as the uncertainty says.
   std::string localisation;
@@ -102,7 +102,7 @@ class ImaginationClientNode {
   hires::imagination::KeptRollouts kept_;
   int next_session_{1};
   std::optional<hires::imagination::BelievedPose> believed_;
-  std::string believed_frame_;  // of its message
+  std::string believed_frame_{"map"};  // of its message
   hires::base::TopicWarnings topic_warnings_;
   Server server_;
   AskerWatch askers_;

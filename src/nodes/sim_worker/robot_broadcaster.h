@@ -17,7 +17,7 @@ namespace hires_ros {
 
 /// Shows a worker's robot to its own master under the names of a PR2: /clock, /tf (map ->
 /// odom_combined -> base_footprint), /tf_static (links; the joints are frozen at this level of
-/// detail), /joint_states, /base_odometry/odom; and to the main master /worker_k/markers. Simulated
+/// detail), /joint_states, /base_odometry/odom; and to the main master worker_k/markers. Simulated
 /// time never runs backwards: each rollout goes on where the last ended.
 class RobotBroadcaster {
  public:

@@ -19,7 +19,7 @@
 namespace hires_ros {
 
 struct SimWorkerParams {
-  int index{1};  ///< k of /worker_k
+  int index{1};  ///< k of worker_k
   hires::imagination::SetupConfig setup;
   double display_rate{20.0};  ///< [Hz] of /clock, /tf, odometry and markers, by the wall's clock
 };
@@ -29,7 +29,7 @@ struct SimWorkerParams {
 /// hires::base::ConfigError.
 SimWorkerParams LoadSimWorkerParams();
 
-/// Plays rollouts for any client: the action /worker_k/rollout. Goals wait for their turn in the
+/// Plays rollouts for any client: the action worker_k/rollout. Goals wait for their turn in the
 /// order in which they came; they are played on a thread beside the ROS callbacks. Feedback carries
 /// one rollout each, the result all of them once more. The robot's URDF is the parameter
 /// /robot_description of the worker's master.

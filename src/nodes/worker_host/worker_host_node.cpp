@@ -200,10 +200,11 @@ void WorkerHostNode::StartNodes(double now) {
   command.insert(command.end(), params_.worker_arguments.begin(), params_.worker_arguments.end());
   worker_.emplace(
       hires::base::ProcessOptions{Filled(command), WorkerEnvironment(), params_.nice, ""});
-  relay_.emplace(hires::base::ProcessOptions{Filled(params_.relay_command),
-                                             {"ROS_MASTER_URI=" + ros::master::getURI()},
-                                             params_.nice,
-                                             ""});
+  relay_.emplace(hires::base::ProcessOptions{
+      Filled(params_.relay_command),
+      {"ROS_MASTER_URI=" + ros::master::getURI(), "ROS_NAMESPACE=" + params_.parent},
+      params_.nice,
+      ""});
 }
 
 bool WorkerHostNode::HasCrossed() {
@@ -280,7 +281,8 @@ std::vector<std::string> WorkerHostNode::Filled(const std::vector<std::string>& 
 
 std::vector<std::string> WorkerHostNode::WorkerEnvironment() const {
   std::vector<std::string> environment{
-      "ROS_MASTER_URI=" + params_.master_uri(), "ROS_IP=" + params_.address, "ROS_HOSTNAME",
+      "ROS_MASTER_URI=" + params_.master_uri(), "ROS_NAMESPACE=" + params_.parent,
+      "ROS_IP=" + params_.address, "ROS_HOSTNAME",
       "ROS_LOG_DIR=" + ros::file_log::getLogDirectory() + params_.name_space()};
   const auto more = Filled(params_.environment);
   environment.insert(environment.end(), more.begin(), more.end());

@@ -261,10 +261,9 @@ Formula ReadCondition(const Datum& datum, HddlScope* scope) {
   if (head == "forall") return ReadQuantifier(Kind::kForall, datum, scope);
   if (head == "exists") return ReadQuantifier(Kind::kExists, datum, scope);
   if (head == "=") return ReadEqual(datum, scope);
+  if (scope->vocabulary->predicates.count(head) > 0) return ReadAtom(datum, scope);
   if (IsComparison(head)) FailOnNumbers(datum, *scope);
-  if (IsSortWord(head) && scope->vocabulary->predicates.count(head) == 0) {
-    return ReadSort(datum, scope);
-  }
+  if (IsSortWord(head)) return ReadSort(datum, scope);
   return ReadAtom(datum, scope);
 }
 

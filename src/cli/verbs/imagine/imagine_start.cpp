@@ -10,6 +10,7 @@
 #include <set>
 #include <utility>
 
+#include "cli/radians.h"
 #include "hires/base/error.h"
 #include "hires/base/text.h"
 #include "imagination/area_file.h"
@@ -39,13 +40,6 @@ std::vector<double> NumbersIn(const std::string& text) {
     if (used != part.size() || !std::isfinite(numbers.back())) return {};
   }
   return numbers;
-}
-
-void RefuseDegrees(const std::string& option, const std::string& text, double yaw) {
-  if (std::abs(yaw) <= 2.0 * M_PI) return;
-  throw base::ConfigError(fmt::format(
-      "{} '{}': yaw is in radians, wanted between -2 pi and 2 pi; {:g} degrees are {:.5g}", option,
-      text, yaw, yaw * M_PI / 180.0));
 }
 
 /// A name that comes again would be one thing, where two were meant.
@@ -198,8 +192,8 @@ void RequirePostures(const ImagineStart& start, const robot::Robot& robot) {
 void AddStartOptions(CLI::App* app, StartOptions* o) {
   app->add_option("--from", o->from, "area where the robot stands")->required();
   app->add_option("--object", o->on_tray,
-                  "what stands on its tray: instance, model, or file (.sdf, .urdf, .yaml); may be "
-                  "repeated")
+                  "what stands on its tray: instance, model, or file (.sdf, .urdf, .yaml); up to "
+                  "three times")
       ->allow_extra_args(false);
   app->add_option("--object-in-hand", o->in_hand,
                   "OBJECT:ARM, what an arm holds, named as for --object: mug1:rightArm1")
