@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "support/messages.h"
+#include "support/scenes.h"
 
 namespace hires::cli::imagine_start_test {
 namespace {

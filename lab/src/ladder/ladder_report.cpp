@@ -5,7 +5,6 @@
 
 #include "lab/src/interval_json.h"
 #include "lab/src/ladder/ladder.h"
-#include "lab/src/interval_json.h"
 #include "reports/text/known_number.h"
 #include "reports/text/report_table.h"
 

@@ -6,7 +6,6 @@
 #include "lab/src/interval_json.h"
 #include "lab/src/recognition/torso_poses.h"
 #include "lab/src/statistics.h"
-#include "lab/src/interval_json.h"
 #include "reports/text/known_number.h"
 #include "reports/text/report_table.h"
 
