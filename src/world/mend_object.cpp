@@ -34,13 +34,14 @@ std::string MendInertia(bool is_said, ObjectModel* object) {
 
 std::vector<std::string> DoubtsOfMass(const ObjectModel& object) {
   constexpr double kDensest = 23000.0;               // [kg/m^3] osmium, rounded up
+  constexpr double kThinnest = 0.001;                // [m] as which flat meshes count
   constexpr double kGrams = 0.001, kOutside = 0.01;  // [kg], [m]
   std::vector<std::string> doubts;
   if (object.collisions.empty()) return doubts;
   const geometry::Aabb bounds = BoundsOfShapes(object);
   const Eigen::Vector3d size = bounds.upper - bounds.lower;
   const geometry::MassProperties& mass = object.mass_properties;
-  if (mass.mass > kDensest * size.prod()) {
+  if (mass.mass > kDensest * size.cwiseMax(kThinnest).prod()) {
     doubts.push_back(
         fmt::format("whose {:g} kg are more than any matter has in the {} of its shapes, as if the "
                     "unit were not "

@@ -135,7 +135,6 @@ EpisodeRecording ReadEpisodeRecording(const std::string& path, const reports::Ep
     hires::base::ReportProgress("reading " + path, 1.0);
     recording.missing = reader.builder().MissingText();
     recording.untold_joints = reader.builder().UntoldJoints();
-    recording.knows_joints = reader.builder().knows_joints();
     recording.dropped = reader.builder().dropped();
     recording.episodes = reader.builder().Take();
   });

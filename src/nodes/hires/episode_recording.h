@@ -15,7 +15,6 @@ struct EpisodeRecording {
   std::vector<hires::reports::Episode> episodes;  ///< one for each run of the robot's clock
   std::map<std::string, int> dropped;             ///< what was left out and why -> how often
   std::vector<std::string> untold_joints;         ///< of arms and torso
-  bool knows_joints{true};                        ///< something was told of one of them
   std::string missing;  ///< of a robot whose state was never known: what did not come; or empty
 };
 

@@ -144,7 +144,9 @@ void PrintNotes(const EpisodeRecording& recording) {
 void PrintUntoldJoints(const std::vector<std::string>& joints) {
   if (joints.empty()) return;
   std::cout << fmt::format(
-      "joint states never told of {} ({}): imagined as in the driving posture\n",
+      "joint states never told of {} of arms and torso ({}): imagined as in the driving posture; "
+      "if "
+      "the robot told of them elsewhere, say by --names on which topic\n",
       hires::base::Counted(joints.size(), "joint"), hires::base::Join(joints, ", "));
 }
 
@@ -170,16 +172,6 @@ void RequireState(const EpisodeReplay& replay, const EpisodeRecording& recording
       "what this robot calls its topics and frames",
       replay.bag, recording.missing.empty() ? "a moment with all of it" : recording.missing,
       ListOfDropped(recording)));
-}
-
-/// Joint states of another robot would pass for those of one that keeps its arms still.
-void RequireJoints(const EpisodeReplay& replay, const EpisodeConfig& config,
-                   const EpisodeRecording& recording) {
-  if (recording.knows_joints) return;
-  throw ConfigError(fmt::format(
-      "{}: {} tells of none of the joints of this robot's arms and torso, such as '{}'; record its "
-      "joint states, or say by --names on which topic they are",
-      replay.bag, config.Of("joint_states").topic, recording.untold_joints.front()));
 }
 
 [[noreturn]] void FailWithoutSteps(const EpisodeReplay& replay) {
@@ -222,7 +214,6 @@ int ReplayEpisode(const EpisodeReplay& replay, const EpisodeConfig& config,
           .setup;
   const EpisodeRecording recording = ReadEpisodeRecording(replay.bag, config, setup);
   RequireState(replay, recording);
-  RequireJoints(replay, config, recording);
   PrintNotes(recording);
   PrintUntoldJoints(recording.untold_joints);
   ordered_json json = ReplayedJson(replay, recording);

@@ -160,10 +160,6 @@ std::vector<std::string> EpisodeBuilder::UntoldJoints() const {
   return untold;
 }
 
-bool EpisodeBuilder::knows_joints() const {
-  return body_joints_.empty() || UntoldJoints().size() < body_joints_.size();
-}
-
 std::vector<Episode> EpisodeBuilder::Take() {
   std::vector<Episode> all = std::exchange(episodes_, std::vector<Episode>(1));
   all.erase(std::remove_if(all.begin(), all.end(),

@@ -77,8 +77,6 @@ class EpisodeBuilder {
   std::string MissingText() const;
   /// Joints of arms and torso of which no joint state told: they stand as in the driving posture.
   std::vector<std::string> UntoldJoints() const;
-  bool knows_joints()
-      const;  ///< whether of one of them at least something was told, or it has none
   /// "odometry: it is not finite" -> how often.
   const std::map<std::string, int>& dropped() const { return dropped_; }
   /// All that have a sample or an action, in their order.
