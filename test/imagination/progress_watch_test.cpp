@@ -17,7 +17,7 @@ using geometry::Pose2;
 using ::testing::AllOf;
 using ::testing::HasSubstr;
 
-constexpr test_support::PropertyCases kPropertyCases{200};
+constexpr hires::test_support::PropertyCases kPropertyCases{200};
 constexpr double kPeriod = 0.1;  // [s] of a control cycle
 
 double Draw(double lower, double upper) {

@@ -16,7 +16,7 @@ namespace {
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 
-constexpr test_support::PropertyCases kPropertyCases{200};
+constexpr hires::test_support::PropertyCases kPropertyCases{200};
 constexpr char kShipped[] = HIRES_SOURCE_DIR "/config/uncertainty.yaml";
 constexpr char kFriction[] =
     "object_friction: {distribution: fixed, value: 0.7, unit: factor, source: measured}\n";
