@@ -141,7 +141,7 @@ class ImaginationBadFilesTest(unittest.TestCase):
         for node, argument, text in (
                 ('imagination_client', '_workers:=0',
                  '~workers is 0, wanted a whole number between 1 and 256'),
-                ('imagination_client', '_workers:=many', '~workers is many, wanted a whole number'),
+                ('imagination_client', '_workers:=many', "~workers is 'many', wanted a whole number"),
                 ('sim_worker', '_index:=257',
                  '~index is 257, wanted a whole number between 1 and 256'),
                 ('imagination_client', '_localisation:=my pose', '[my pose]'),  # no topic's name

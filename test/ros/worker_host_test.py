@@ -277,7 +277,7 @@ class WorkerHostTest(Family, unittest.TestCase):
     def test_mistakes_are_named(self):
         mistakes = (
             (['_index:=300'], {}, '~index is 300, wanted a whole number between 1 and 256'),
-            (['_nice:=low'], {}, '~nice is low, wanted a whole number'),
+            (['_nice:=low'], {}, "~nice is 'low', wanted a whole number"),
             (['_address:=0.0.0.0'], {}, '~address is 0.0.0.0, wanted an address'),
             (['_indx:=1'], {}, "'indx' is unknown; did you mean 'index'"),
             ([], {'base_port': 80}, "base_port is '80', wanted a whole number between 1024"),

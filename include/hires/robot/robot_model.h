@@ -52,7 +52,7 @@ struct RobotModel {
   std::string name;
   std::vector<Link> links;
   std::uint64_t hash{0};               ///< of everything above, independent of the file's layout
-  std::vector<std::string> plugins{};  ///< of a simulator (<gazebo>): their files
+  std::vector<std::string> plugins{};  ///< of a simulator: their files
 
   std::optional<int> FindLink(const std::string& name) const;
   std::vector<std::string> LinkNames() const;

@@ -25,6 +25,8 @@ std::optional<XmlRpcValue> PrivateValue(const std::string& key) {
   std::ostringstream text;
   if (value.getType() == XmlRpcValue::TypeBoolean) {
     text << std::boolalpha << static_cast<bool>(value);  // the library would write 1
+  } else if (value.getType() == XmlRpcValue::TypeString) {
+    text << '\'' << static_cast<std::string>(value) << '\'';
   } else {
     value.write(text);
   }
