@@ -516,9 +516,8 @@ TEST(CommandLineTest, BlanksRoundAlternativesAreNoneOfTheirNames) {
 }
 
 TEST(CommandLineTest, AnEmptyValueIsNotTakenForTheDefault) {
-  for (const char* option :
-       {"--world", "--map", "--robot", "--objects", "--object", "--uncertainty", "--scene",
-        "--config", "--ranking", "--json", "--html"}) {
+  for (const char* option : {"--world", "--map", "--robot", "--objects", "--object",
+                             "--uncertainty", "--config", "--ranking", "--json", "--html"}) {
     for (const char* empty : {"", " "}) {
       ExpectRefused(Small().Imagine(kDrive + std::vector<std::string>{option, empty}),
                     {option, "an empty text came"});

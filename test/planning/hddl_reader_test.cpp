@@ -226,16 +226,6 @@ TEST(HddlMethodTest, AListOfListsIsAConjunction) {
   EXPECT_THAT(network.order, ElementsAre(Pair(0, 1)));
 }
 
-TEST(HddlMethodTest, ADeclaredPredicateMayBeCalledAsAComparison) {
-  for (const std::string name : {"<", ">", "<=", ">="}) {
-    const Domain domain = ReadHddlDomain("(define (domain d) (:predicates (" + name +
-                                             " ?a ?b)) (:action a :parameters (?a ?b) " +
-                                             ":precondition (" + name + " ?a ?b)))",
-                                         "d.hddl");
-    EXPECT_THAT(Text(domain.operators.at(0).precondition.condition), HasSubstr(name + " ?a ?b"));
-  }
-}
-
 TEST(HddlMethodTest, OrderedSubtasksFollowOneAnother) {
   const Domain domain = World(R"(
     (:method a :parameters () :task (go dock)

@@ -298,8 +298,7 @@ class ImaginationBadInputTest(unittest.TestCase):
         goal = self.state_goal()
         goal.world_state.header.frame_id = 'odom_combined'
         self.require_invalid(goal, "world_state.header.frame_id is 'odom_combined', wanted 'map'")
-        self.require_invalid(self.goal(updated_fluents=[]), "is '', wanted 'map'",
-                             'updated_fluents')
+        self.require_invalid(self.goal(updated_fluents=[]), 'nothing says where it begins', 'updated_fluents')
 
     def test_a_good_state_is_played_as_the_atoms_are(self):
         goal = self.state_goal(x=6.8, y=10.1, yaw=3.14)

@@ -79,16 +79,16 @@ class ImaginationLaunchTest(LaunchCase):
         def launch(name, base_port, *files):
             return system.run(['roslaunch', 'hires', 'imagination.launch', 'workers:=1',
                                'base_port:=%d' % base_port, *files], ROS_NAMESPACE=name)
-        both = [launch('restaurant', system.base_port),
-                launch('hall', free_port_block(2) - 1, 'world:=' + world,
-                       'robot:=' + os.path.join(EXAMPLE, 'courier.yaml'),
-                       'objects:=' + os.path.join(EXAMPLE, 'objects.yaml'))]
-        for each in both:
-            each.wait_for('worker=1 joined')
+        with_master = launch('restaurant', system.base_port)
+        with_master.wait_for('worker=1 joined')
+        beside = launch('hall', free_port_block(2) - 1, 'world:=' + world,
+                        'robot:=' + os.path.join(EXAMPLE, 'courier.yaml'),
+                        'objects:=' + os.path.join(EXAMPLE, 'objects.yaml'))
+        beside.wait_for('worker=1 joined')
         asked = system.run([executable('hires'), 'imagine', '--action', 'move_base_param', '--from', 'kitchenDoor',
                             '--arg', 'atRoundTable', '--arg', 'slow', '--rollouts', '8'], ROS_NAMESPACE='hall')
         self.assertEqual(asked.wait(), 0, asked.output())
-        for each in both:
+        for each in (beside, with_master):  # whose master goes with it
             self.assertEqual(each.output().count('worker=1 joined'), 1, each.output())
             self.assertNotIn('withdrawn', each.output())
             each.signal(signal.SIGINT)

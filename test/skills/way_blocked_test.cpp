@@ -180,7 +180,7 @@ TEST(WayBlockedTest, AGoalAtWhichOnlyTheHeadingIsWrongSaysWhatReachesIntoWhat) {
   base::Rng rng(14);
   const std::vector<std::string> sides{"front", "left", "back", "right"};
   for (int i = 0; i < Rounds(40); ++i) {
-    const double length = rng.Uniform(1.0, 1.6), yaw = rng.Uniform(-3.0, 3.0);
+    const double length = rng.Uniform(1.2, 1.6), yaw = rng.Uniform(-3.0, 3.0);
     const int side = i % 4;
     world::World world;
     for (const double end : {-12.0, 12.0}) {  // so large is the map
@@ -188,9 +188,10 @@ TEST(WayBlockedTest, AGoalAtWhichOnlyTheHeadingIsWrongSaysWhatReachesIntoWhat) {
     }
     const Pose2 X_MT{rng.Uniform(2.0, 5.0), rng.Uniform(-3.0, 3.0), yaw};
     const Eigen::Vector2d p_M =
-        (X_MT * Pose2{0.0, 0.0, side * 0.5 * geometry::kPi} * Pose2{length - 0.1, 0.0, 0.0})
+        (X_MT * Pose2{0.0, 0.0, side * 0.5 * geometry::kPi} * Pose2{length - 0.2, 0.0, 0.0})
             .position();
-    world.statics.push_back(Block("post", {0.3, 0.3, 1.0}, {p_M.x(), p_M.y(), 0.5}));
+    // So wide that nothing within the tolerance of the goal is clear of it.
+    world.statics.push_back(Block("post", {0.5, 0.5, 1.0}, {p_M.x(), p_M.y(), 0.5}));
     world.sources["post"] = "hall.world:2";
     const auto context = std::make_shared<const DrivingContext>(
         MakeDrivingContext(world, WithBed(length, side * 0.5 * geometry::kPi), MoveBaseParams{}));
