@@ -165,14 +165,17 @@ robot::Robot WithRootAskew(double length, double width, double askew) {
   return robot;
 }
 
-/// With a bed far to one side: what a round robot would stand clear of, the bed reaches into.
-robot::Robot WithBed(double length, double yaw) {
+/// A car with a bed far to one side: what a round robot would stand clear of, the bed reaches into.
+/// Of all bases a car alone is asked whether it fits its goal as it is to be headed there.
+robot::Robot CarWithBed(double length, double yaw) {
   robot::Robot robot = TrayRobot();
   std::vector<Eigen::Vector2d> corners = robot.profile.footprint;
   for (const double side : {0.2, -0.2}) {
     corners.push_back(Eigen::Rotation2Dd(yaw) * Eigen::Vector2d(length, side));
   }
   robot.profile.footprint = geometry::ConvexHull(corners);
+  robot.profile.base_controller.drive = robot::Drive::kCarLike;
+  robot.profile.base_controller.min_turning_radius = 0.5;
   return robot;
 }
 
@@ -193,8 +196,8 @@ TEST(WayBlockedTest, AGoalAtWhichOnlyTheHeadingIsWrongSaysWhatReachesIntoWhat) {
     // So wide that nothing within the tolerance of the goal is clear of it.
     world.statics.push_back(Block("post", {0.5, 0.5, 1.0}, {p_M.x(), p_M.y(), 0.5}));
     world.sources["post"] = "hall.world:2";
-    const auto context = std::make_shared<const DrivingContext>(
-        MakeDrivingContext(world, WithBed(length, side * 0.5 * geometry::kPi), MoveBaseParams{}));
+    const auto context = std::make_shared<const DrivingContext>(MakeDrivingContext(
+        world, CarWithBed(length, side * 0.5 * geometry::kPi), MoveBaseParams{}));
     const Status status = FirstWord(context, X_MT * Pose2{-4.0, 0.0, 0.0}, X_MT);
     ASSERT_EQ(status.failure.code, FailureCode::kGoalBlocked) << "length " << length;
     EXPECT_THAT(
