@@ -44,8 +44,7 @@ std::vector<std::string> DoubtsOfMass(const ObjectModel& object) {
   if (mass.mass > kDensest * size.cwiseMax(kThinnest).prod()) {
     doubts.push_back(
         fmt::format("whose {:g} kg are more than any matter has in the {} of its shapes, as if the "
-                    "unit were not "
-                    "the kilogram: in grams it would be {:g} kg",
+                    "unit were not the kilogram: in grams it would be {:g} kg",
                     mass.mass, SizeText(size), kGrams * mass.mass));
   }
   const Eigen::Vector3d& p = mass.p_BBcm;
@@ -53,8 +52,7 @@ std::vector<std::string> DoubtsOfMass(const ObjectModel& object) {
   if (outside.maxCoeff() > kOutside) {
     doubts.push_back(
         fmt::format("whose centre of mass ({:.3g}, {:.3g}, {:.3g}) m lies {:.3g} m outside of the "
-                    "box round its "
-                    "shapes, as if the pose of its <inertial> were not meant",
+                    "box round its shapes, as if the pose of its <inertial> were not meant",
                     p.x(), p.y(), p.z(), outside.maxCoeff()));
   }
   return doubts;

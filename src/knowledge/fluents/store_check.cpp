@@ -96,13 +96,11 @@ bool IsOfKind(const Filler& filler, ValueKind kind) {
   return false;
 }
 
-bool HasValues(const Ontology::Relation& relation) {
-  return relation.range.compare(0, 4, "xsd:") == 0;
-}
+bool IsOfValues(std::string_view range) { return range.substr(0, 4) == "xsd:"; }
 
 /// Of what stands in a fluent: links are the names of others.
 ValueKind KindIn(const Ontology::Relation& relation) {
-  return HasValues(relation) ? KindOf(relation.range) : ValueKind::kText;
+  return IsOfValues(relation.range) ? KindOf(relation.range) : ValueKind::kText;
 }
 
 const char* WantedOf(ValueKind kind) {
@@ -142,7 +140,7 @@ void CheckText(const std::string& where, const Filler& filler) {
 
 void CheckValue(const std::string& where, const Property& property, const std::string& range) {
   RequireKnownType(where, property.type);
-  if (!range.empty() && (range.compare(0, 4, "xsd:") != 0 || !Fits(property.type, range))) {
+  if (!range.empty() && (!IsOfValues(range) || !Fits(property.type, range))) {
     FailAt(where, fmt::format("is given as {}, the relation wants {}", property.type, range));
   }
   if (!IsOfKind(property.filler, KindOf(property.type))) {
@@ -275,8 +273,9 @@ bool CanHave(const Ontology::Relation& relation, const Filler& filler) {
 
 void CheckFiller(const Ontology::Relation& relation, const Filler& filler) {
   if (CanHave(relation, filler)) return;
-  const std::string wanted = HasValues(relation) ? WantedOf(KindIn(relation))
-                                                 : fmt::format("the name of a {}", relation.range);
+  const std::string wanted = IsOfValues(relation.range)
+                                 ? WantedOf(KindIn(relation))
+                                 : fmt::format("the name of a {}", relation.range);
   throw base::ConfigError(fmt::format("property '{}' is asked for with {}; wanted {}",
                                       relation.name, Show(filler), wanted));
 }

@@ -145,8 +145,7 @@ void PrintUntoldJoints(const std::vector<std::string>& joints) {
   if (joints.empty()) return;
   std::cout << fmt::format(
       "joint states never told of {} of arms and torso ({}): imagined as in the driving posture; "
-      "if "
-      "the robot told of them elsewhere, say by --names on which topic\n",
+      "if the robot told of them elsewhere, say by --names on which topic\n",
       hires::base::Counted(joints.size(), "joint"), hires::base::Join(joints, ", "));
 }
 

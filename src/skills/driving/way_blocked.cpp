@@ -242,8 +242,7 @@ class Explainer {
     }
     return fmt::format(
         "; as it is headed the base reaches {:.2f} m to the {}, into {}: turn it, or choose "
-        "another "
-        "place",
+        "another place",
         farthest,
         is_along ? (side.x() > 0.0 ? "front" : "back") : (side.y() > 0.0 ? "left" : "right"),
         WhatIsAt(*touched));

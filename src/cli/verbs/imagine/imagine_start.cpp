@@ -47,11 +47,10 @@ void RefuseTwice(const std::vector<std::string>& on_tray) {
   std::set<std::string> seen;
   for (const std::string& object : on_tray) {
     if (seen.insert(base::ToLower(object)).second) continue;
-    throw base::ConfigError(
-        fmt::format("--object '{0}': came twice, wanted a name for each thing; one more of its "
-                    "kind has another "
-                    "number, as mug1 and mug2; of a file, copy it under another name",
-                    object));
+    throw base::ConfigError(fmt::format(
+        "--object '{0}': came twice, wanted a name for each thing; one more of its "
+        "kind has another number, as mug1 and mug2; of a file, copy it under another name",
+        object));
   }
 }
 
