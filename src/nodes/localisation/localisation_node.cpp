@@ -11,8 +11,8 @@
 #include "hires/base/log.h"
 #include "hires/base/process.h"
 #include "hires/ros/names/robot_topics.h"
-#include "hires/ros/place/scan_messages.h"
 #include "hires/ros/robot/robot_messages.h"
+#include "hires/ros/robot/scan_messages.h"
 #include "hires/ros/values/geometry_messages.h"
 #include "hires/ros/world/map_messages.h"
 

@@ -13,8 +13,8 @@
 #include "hires/base/process.h"
 #include "hires/mapping/map_doubt.h"
 #include "hires/ros/names/robot_topics.h"
-#include "hires/ros/place/scan_messages.h"
 #include "hires/ros/robot/robot_messages.h"
+#include "hires/ros/robot/scan_messages.h"
 #include "hires/ros/world/map_messages.h"
 
 namespace hires_ros {

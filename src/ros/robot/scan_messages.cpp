@@ -1,4 +1,4 @@
-#include "hires/ros/place/scan_messages.h"
+#include "hires/ros/robot/scan_messages.h"
 
 #include <fmt/format.h>
 
