@@ -12,6 +12,7 @@
 
 #include "hires/base/error.h"
 #include "hires/base/log.h"
+#include "hires/base/radians.h"
 #include "hires/base/short_text.h"
 #include "hires/base/text.h"
 #include "imagination/area_keys.h"
@@ -649,13 +650,10 @@ class AreaReader {
   }
 
   std::optional<geometry::Pose2> Checked(int line, const geometry::Pose2& X_MA) {
-    if (std::abs(X_MA.yaw) > 2.0 * M_PI) {
-      Fail(line, fmt::format("yaw is in radians, wanted between -2 pi and 2 pi; {:g} degrees are "
-                             "{:.5g}",
-                             X_MA.yaw, X_MA.yaw * M_PI / 180.0));
-      return std::nullopt;
-    }
-    return X_MA;
+    const std::optional<std::string> why = base::WhyNoRadians(X_MA.yaw);
+    if (!why) return X_MA;
+    Fail(line, "its yaw " + *why);
+    return std::nullopt;
   }
 
   const std::string& path_;

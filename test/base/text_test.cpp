@@ -9,6 +9,7 @@
 #include <thread>
 
 #include "hires/base/error.h"
+#include "hires/base/radians.h"
 #include "hires/base/rng.h"
 #include "hires/base/short_text.h"
 
@@ -264,6 +265,12 @@ TEST(AllThatIsWrongTest, OneAloneIsItselfAndOfManyTheFirstAreListed) {
               AllOf(HasSubstr("57 things are wrong"), EndsWith("\n  x\n  and 7 more")));
   EXPECT_EQ(FirstLines(many).size(), kMostListed + 1);
   EXPECT_THAT(FirstLines({"x"}), ElementsAre("x"));
+}
+
+TEST(RadiansTest, ATurnRoundedUpwardsIsOneAndDegreesAreNone) {
+  for (const double angle : {0.0, 3.15, -6.2832, 6.29}) EXPECT_FALSE(WhyNoRadians(angle)) << angle;
+  EXPECT_THAT(WhyNoRadians(-90.0).value(), HasSubstr("-90 degrees are -1.5708"));
+  EXPECT_TRUE(WhyNoRadians(6.3));
 }
 
 }  // namespace

@@ -84,7 +84,7 @@ TEST(ImagineStartTest, RefusesWhatItCannotRead) {
   EXPECT_THAT(why_not(options), AllOf(HasSubstr("'book1:1,2,-0.1'"), HasSubstr("below the floor")));
   for (const char* put : {"book1:1,2,0,90", "book1:table:0.1,0.2,-45", "book1:1,2,0,6.3"}) {
     options.put = {put};
-    EXPECT_THAT(why_not(options), AllOf(HasSubstr(put), HasSubstr("yaw is in radians"))) << put;
+    EXPECT_THAT(why_not(options), AllOf(HasSubstr(put), HasSubstr("wanted radians"))) << put;
   }
   for (const std::vector<std::string>& objects : std::vector<std::vector<std::string>>{
            {"mug1", "mug1"}, {"mug1", "book1", "Mug1"}, {"a.sdf", "a.sdf"}}) {
@@ -110,7 +110,7 @@ TEST(ReadAreaTest, ReadsOneTurnOfYawAndRefusesDegrees) {
        {std::pair("kitchen:3.2,1.0,90", "90 degrees are 1.5708"),
         std::pair("kitchen:3.2,1.0,-180", "-180 degrees are -3.1416")}) {
     EXPECT_THAT(ConfigErrorOf([&] { ReadAreas({text}); }),
-                AllOf(HasSubstr(text), HasSubstr("yaw is in radians"), HasSubstr(radians)));
+                AllOf(HasSubstr(text), HasSubstr("wanted radians"), HasSubstr(radians)));
   }
 }
 

@@ -173,7 +173,7 @@ TEST_F(AreaFileTest, HeightsAreKeptInAllForms) {
 
 TEST_F(AreaFileTest, AllThatIsWrongIsToldWithItsLine) {
   EXPECT_THAT(ErrorOf("a: [1, 2, 90]\nb: [1, 2, 3, 4]\nA: [0, 0, 0]\nc: {x: one, y: 2}\n"),
-              AllOf(HasSubstr("4 things are wrong"), HasSubstr("goals.yaml:1: yaw is in radians"),
+              AllOf(HasSubstr("4 things are wrong"), HasSubstr("goals.yaml:1: its yaw is"),
                     HasSubstr("goals.yaml:2: a list of 4"), HasSubstr("goals.yaml:3: 'A' is there"),
                     HasSubstr("goals.yaml:4: has no position")));
   EXPECT_THAT(ErrorOf("a: {header: {frame_id: odom}, pose: {position: {x: 1, y: 2}}}\n"),

@@ -3,13 +3,15 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 #include <map>
+#include <optional>
 #include <set>
 #include <utility>
 #include <variant>
 
 #include "hires/base/error.h"
+#include "hires/base/radians.h"
+#include "hires/base/short_text.h"
 #include "hires/base/text.h"
 #include "knowledge/fluents/store_check.h"
 
@@ -42,17 +44,15 @@ bool IsAngle(const std::string& role) {
 }
 
 void CheckAngles(const Fluent& fluent) {
-  constexpr double kTurn = 2.0 * M_PI + 0.01;  // [rad]
   for (const Property& property : fluent.properties) {
     if (!IsAngle(property.role)) continue;
     const auto* real = std::get_if<double>(&property.filler);
     const auto* whole = std::get_if<std::int64_t>(&property.filler);
     const double angle = real ? *real : whole ? static_cast<double>(*whole) : 0.0;
-    if (std::abs(angle) <= kTurn) continue;
-    throw base::ConfigError(fmt::format(
-        "fluent '{}' of {}, property '{}': is {} rad, more than a turn; if these are "
-        "degrees, write {:.5g}",
-        fluent.instance, fluent.concept_name, property.role, angle, angle * M_PI / 180.0));
+    const std::optional<std::string> why = base::WhyNoRadians(angle);
+    if (!why) continue;
+    throw base::ConfigError(fmt::format("fluent '{}' of {}, property '{}': {}", fluent.instance,
+                                        fluent.concept_name, property.role, *why));
   }
 }
 
@@ -89,24 +89,20 @@ void CheckLinks(const Fluent& fluent, const ConceptsOf& concepts, const Ontology
 
 /// Tells of all fluents that cannot be, each with its place in the file.
 void CheckFluents(const KnowledgeFile& file, const Ontology& ontology) {
-  constexpr std::size_t kMostTold = 10;
   const ConceptsOf concepts = ConceptsIn(file);
   std::vector<std::string> faults;
-  std::size_t num_faults = 0;
   for (std::size_t i = 0; i < file.fluents.size(); ++i) {
     try {
       CheckFluent(file.fluents[i], ontology);
       CheckAngles(file.fluents[i]);
       CheckLinks(file.fluents[i], concepts, ontology);
     } catch (const base::ConfigError& error) {
-      if (++num_faults > kMostTold) continue;
       const std::string place = i < file.places.size() ? file.places[i] + ": " : "";
       faults.push_back((file.source.empty() ? "" : file.source + ": ") + place + error.what());
     }
   }
   if (faults.empty()) return;
-  if (num_faults > kMostTold) faults.push_back(fmt::format("and {} more", num_faults - kMostTold));
-  throw base::ConfigError(base::Join(faults, "\n"));
+  throw base::ConfigError(base::Join(base::FirstLines(std::move(faults)), "\n"));
 }
 
 LoadSummary Summarize(const KnowledgeFile& file, std::size_t num_fluents,

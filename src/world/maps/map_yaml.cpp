@@ -10,6 +10,7 @@
 #include <set>
 
 #include "hires/base/error.h"
+#include "hires/base/radians.h"
 #include "hires/base/short_text.h"
 #include "hires/base/spelling.h"
 #include "hires/base/text.h"
@@ -20,7 +21,6 @@ namespace {
 
 constexpr double kMaxOrigin = 1e5;  // [m]
 constexpr double kNoYaw = 1e-6;     // [rad] what tools write for 0
-constexpr double kMaxYaw = 6.2832;  // [rad] a full turn, as it is rounded
 constexpr std::size_t kMostNamed = 12;
 
 const std::vector<std::string>& KnownKeys() {
@@ -188,11 +188,8 @@ class MapYamlReader {
                                                 "within {:g} m",
                                                 numbers[0], numbers[1], numbers[2], kMaxOrigin));
     }
-    if (std::abs(numbers[2]) > kMaxYaw) {
-      return Fail(LineOf("origin"),
-                  fmt::format("origin: its third number, the yaw, is {:g}, more than a full turn, "
-                              "wanted radians; of degrees, that is {:g}",
-                              numbers[2], numbers[2] * EIGEN_PI / 180.0));
+    if (const std::optional<std::string> why = base::WhyNoRadians(numbers[2])) {
+      return Fail(LineOf("origin"), "origin: its third number, the yaw, " + *why);
     }
     params->origin = {numbers[0], numbers[1]};
     params->yaw = std::abs(numbers[2]) < kNoYaw ? 0.0 : numbers[2];
