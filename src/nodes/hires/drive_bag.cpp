@@ -156,28 +156,23 @@ class DriveReader {
  private:
   void TakeScan(const rosbag::MessageInstance& message) {
     if (const auto scan = message.instantiate<sensor_msgs::LaserScan>()) {
-      return builder_.OnScan(scan->header.stamp.toSec(), scan->header.frame_id, ReadingOf(*scan));
+      return builder_.OnScan(scan->header.stamp.toSec(), scan->header.frame_id,
+                             ReadingSaidOf(*scan));
     }
     if (const auto scan = message.instantiate<sensor_msgs::MultiEchoLaserScan>()) {
       return builder_.OnScan(scan->header.stamp.toSec(), scan->header.frame_id,
-                             ReadingOf(NearestEchoesOf(*scan)));
+                             ReadingSaidOf(NearestEchoesOf(*scan)));
     }
     builder_.LeaveOut("scans of another type, or of another version of it");
   }
 
-  /// Some drivers leave angle_increment 0, and angle_max tells it, if they do not leave that 0,
-  /// too.
-  ScanReading ReadingOf(const sensor_msgs::LaserScan& msg) {
-    ScanReading reading{msg.angle_min, msg.angle_increment, msg.range_min, msg.ranges,
-                        msg.range_max};
-    const double span = static_cast<double>(msg.angle_max) - msg.angle_min;
-    const bool is_told_by_span =
-        std::isfinite(span) && span != 0.0 && msg.angle_max != 0.0F && msg.ranges.size() > 1;
-    if (msg.angle_increment != 0.0F || !is_told_by_span) return reading;
-    reading.angle_increment = span / static_cast<double>(msg.ranges.size() - 1);
-    WarnOnce(
-        "angle_increment of scans is 0: the angle between two beams is taken from angle_min, "
-        "angle_max and the number of ranges");
+  ScanReading ReadingSaidOf(const sensor_msgs::LaserScan& msg) {
+    ScanReading reading = ReadingOf(msg);
+    if (msg.angle_increment == 0.0F && reading.angle_increment != 0.0) {
+      WarnOnce(
+          "angle_increment of scans is 0: the angle between two beams is taken from angle_min, "
+          "angle_max and the number of ranges");
+    }
     return reading;
   }
 

@@ -3,6 +3,7 @@
 #include "hires/base/error.h"
 #include "hires/ros/names/robot_topics.h"
 #include "hires/ros/perception/cloud_messages.h"
+#include "hires/ros/robot/scan_messages.h"
 
 namespace hires_ros {
 namespace {
@@ -78,9 +79,7 @@ void RobotInputs::OnTransforms(const tf2_msgs::TFMessage& msg, bool are_static) 
 
 void RobotInputs::OnScan(const sensor_msgs::LaserScan& msg) {
   const double stamp = msg.header.stamp.toSec();
-  const auto receipt = observations_.OnScan(
-      stamp, msg.header.frame_id,
-      {msg.angle_min, msg.angle_increment, msg.range_min, msg.ranges, msg.range_max});
+  const auto receipt = observations_.OnScan(stamp, msg.header.frame_id, ReadingOf(msg));
   if (receipt.is_bad()) sensors_.Refuse(names_.base_scan, hires::sensing::ToString(receipt));
   hooks_.arrived(names_.base_scan, stamp);
 }

@@ -5,6 +5,7 @@
 #include "hires/ros/names/topic_names.h"
 #include "hires/ros/perception/cloud_messages.h"
 #include "hires/ros/robot/robot_messages.h"
+#include "hires/ros/robot/scan_messages.h"
 #include "hires/ros/world/world_messages.h"
 #include "hires/skills/action_loader.h"
 #include "nodes/world_tracker/tray_markers.h"
@@ -111,8 +112,7 @@ void WorldTrackerNode::SubscribeTo(ros::NodeHandle* nh, const std::string& topic
 
 void WorldTrackerNode::OnScan(const sensor_msgs::LaserScan& msg) {
   const auto receipt =
-      floor_->OnScan(msg.header.stamp.toSec(), msg.header.frame_id,
-                     {msg.angle_min, msg.angle_increment, msg.range_min, msg.ranges});
+      floor_->OnScan(msg.header.stamp.toSec(), msg.header.frame_id, ReadingOf(msg));
   for (const sensing::Receipt& one : {receipt, floor_->receipt()})
     if (one.is_bad()) sensors_.Refuse(params_.files.names.base_scan, sensing::ToString(one));
 }

@@ -7,6 +7,7 @@
 
 #include "hires/base/process.h"
 #include "hires/localisation/laser_mount.h"
+#include "hires/ros/robot/scan_messages.h"
 
 namespace hires_ros {
 namespace {
@@ -118,8 +119,7 @@ void PlacedScans::Try(bool are_all_tried) {
 }
 
 void PlacedScans::HandOver(const sensor_msgs::LaserScan& scan, const Mount& mount) {
-  hires::robot::ScanReading reading{scan.angle_min, scan.angle_increment, scan.range_min,
-                                    scan.ranges, scan.range_max};
+  hires::robot::ScanReading reading = ReadingOf(scan);
   const auto X_BL = localisation::LevelLaser(*mount.X_BL.X_PC, &reading);
   if (!X_BL) {
     return on_drop_(

@@ -3,11 +3,23 @@
 #include <fmt/format.h>
 
 #include <boost/make_shared.hpp>
+#include <cmath>
 
 #include "hires/base/error.h"
 #include "hires/robot/echoes.h"
 
 namespace hires_ros {
+
+hires::robot::ScanReading ReadingOf(const sensor_msgs::LaserScan& msg) {
+  hires::robot::ScanReading reading{msg.angle_min, msg.angle_increment, msg.range_min, msg.ranges,
+                                    msg.range_max};
+  const double span = static_cast<double>(msg.angle_max) - msg.angle_min;
+  const bool is_told_by_span =
+      std::isfinite(span) && span != 0.0 && msg.angle_max != 0.0F && msg.ranges.size() > 1;
+  if (msg.angle_increment == 0.0F && is_told_by_span)
+    reading.angle_increment = span / static_cast<double>(msg.ranges.size() - 1);
+  return reading;
+}
 
 sensor_msgs::LaserScan NearestEchoesOf(const sensor_msgs::MultiEchoLaserScan& msg) {
   sensor_msgs::LaserScan scan;

@@ -7,6 +7,7 @@
 #include "hires/ros/names/robot_topics.h"
 #include "hires/ros/perception/detection_messages.h"
 #include "hires/ros/robot/robot_messages.h"
+#include "hires/ros/robot/scan_messages.h"
 #include "hires/ros/world/world_messages.h"
 
 namespace hires_ros {
@@ -69,8 +70,7 @@ void SensorReceiver::OnDetections(const hires::Detections& msg) {
 void SensorReceiver::OnTrayScan(const sensor_msgs::LaserScan& msg) {
   if (!objects_) return;
   const auto problems =
-      objects_->OnTrayScan(msg.header.stamp.toSec(), msg.header.frame_id,
-                           {msg.angle_min, msg.angle_increment, msg.range_min, msg.ranges});
+      objects_->OnTrayScan(msg.header.stamp.toSec(), msg.header.frame_id, ReadingOf(msg));
   for (const std::string& why : problems) {
     ++num_bad_;
     Warn(names_.sensors.tray_scan, why);

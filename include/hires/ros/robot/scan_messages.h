@@ -4,7 +4,13 @@
 #include <sensor_msgs/MultiEchoLaserScan.h>
 #include <topic_tools/shape_shifter.h>
 
+#include "hires/robot/readings.h"
+
 namespace hires_ros {
+
+/// Where a driver leaves angle_increment 0, it is what angle_max tells, unless that is left 0,
+/// too.
+hires::robot::ScanReading ReadingOf(const sensor_msgs::LaserScan& msg);
 
 /// With the nearest echo of each beam.
 sensor_msgs::LaserScan NearestEchoesOf(const sensor_msgs::MultiEchoLaserScan& msg);
