@@ -16,7 +16,8 @@ from imagination_system import ImaginationSystem  # noqa: E402
 from ros_processes import executable, free_port_block, wait_until  # noqa: E402
 from test_run import run_test  # noqa: E402
 
-EXAMPLE = os.path.join(os.path.dirname(os.path.abspath(__file__)), '..', '..', 'examples', 'own_robot')
+EXAMPLES = os.path.join(os.path.dirname(os.path.abspath(__file__)), '..', '..', 'examples')
+EXAMPLE = os.path.join(EXAMPLES, 'own_robot')
 CYCLES = 20
 SIDE_BY_SIDE = 2  # under a master each
 
@@ -93,6 +94,30 @@ class ImaginationLaunchTest(LaunchCase):
             self.assertNotIn('withdrawn', each.output())
             each.signal(signal.SIGINT)
             each.wait()
+
+    def test_a_map_and_a_file_of_goals_are_a_world(self):
+        (imagination,) = self.launches(1)
+        system = imagination.system
+        files = {'map': os.path.join(EXAMPLES, 'your_files', 'depot.yaml'),
+                 'areas': os.path.join(EXAMPLES, 'your_files', 'goals.yaml'),
+                 'robot': os.path.join(EXAMPLE, 'courier.yaml')}
+        launch = system.run(['roslaunch', 'hires', 'imagination.launch', 'workers:=1',
+                             'base_port:=%d' % system.base_port,
+                             *(':='.join(file) for file in files.items())])
+        launch.wait_for('worker=1 joined')
+        question = {'action': ['--action', 'move_base_param', '--from', 'loading_bay', '--arg',
+                               'rack_1_front,rack_2_front', '--arg', 'slow'], 'rollouts': 4}
+        asked = system.ask(**question).answer()
+        options = [word for name, file in files.items() for word in ('--' + name, file)]
+        local = system.ask('--local', *options, **question).answer()
+        self.assertEqual(asked.code, 0, asked.output)
+        self.assertEqual(asked.content(), local.content())
+        refused = system.run([executable('imagination_client'), '_world:=a.world', '_map:=b.yaml',
+                              '__name:=refused'])
+        self.assertEqual(refused.wait(), 1)
+        self.assertIn("~world is 'a.world' and ~map 'b.yaml', wanted one of them", refused.output())
+        launch.signal(signal.SIGINT)
+        launch.wait()
 
 
 class ImaginationLaunchCyclesTest(LaunchCase):

@@ -125,8 +125,8 @@ hires::imagination::Report ImagineRemotely(const hires::cli::ImagineQuery& query
   if (query.own_scene) {
     throw hires::base::ConfigError(
         "a world, map, robot, area, catalogue or object file is named, but running nodes are asked "
-        "about the files that they were started with: leave it away (areas are then the <frame>s "
-        "of their world), or add --local");
+        "about the files that they were started with (imagination.launch world:=, map:=, areas:=, "
+        "robot:=, objects:=): leave it away, or add --local");
   }
   return FromMsg(AskImaginationClient(GoalOf(query), on_interim, cancelled));
 }

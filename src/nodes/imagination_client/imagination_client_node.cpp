@@ -15,6 +15,7 @@
 #include "hires/imagination/report.h"
 #include "hires/imagination/rollout.h"
 #include "hires/ros/answer/report_messages.h"
+#include "hires/ros/imagination/scene_params.h"
 #include "hires/ros/imagination/trace_markers.h"
 #include "hires/ros/names/topic_names.h"
 #include "hires/ros/node/private_params.h"
@@ -60,17 +61,14 @@ imagination::Event EventOf(int worker, int alternative, const WorkerLink::Played
 }  // namespace
 
 ImaginationClientParams LoadImaginationClientParams() {
-  RejectUnknownPrivate({"config", "workers", "world", "robot", "objects", "uncertainty", "guard",
-                        "localisation", "map_to_world", "action_libraries", "rollout_folder"});
+  RejectUnknownPrivate(
+      WithSceneParams({"config", "workers", "localisation", "map_to_world", "rollout_folder"}));
   ImaginationClientParams params;
   params.config = imagination::ReadClientConfig(PrivateText("config").value_or(
       ros::package::getPath("hires") + "/config/imagination_client.yaml"));
   params.setup = imagination::ReadSetupConfig(params.config.scene);
   Override("workers", PrivateInt("workers"), hires::base::Between(1, 256), &params.num_workers);
-  imagination::OverridePaths(PrivateText("world"), PrivateText("robot"), PrivateText("objects"),
-                             PrivateText("uncertainty"), &params.setup);
-  params.setup.has_base_guard = PrivateBool("guard").value_or(params.setup.has_base_guard);
-  params.setup.action_libraries = PrivateActionLibraries();
+  OverrideScene(&params.setup);
   params.localisation = PrivateText("localisation").value_or("");
   params.map_to_world =
       hires::geometry::ParseMapToWorld(PrivateText("map_to_world").value_or(""), "~map_to_world");

@@ -10,6 +10,7 @@
 #include "hires/imagination/rollout.h"
 #include "hires/robot/load_robot.h"
 #include "hires/ros/answer/report_messages.h"
+#include "hires/ros/imagination/scene_params.h"
 #include "hires/ros/names/topic_names.h"
 #include "hires/ros/node/private_params.h"
 #include "hires/ros/robot/robot_state_messages.h"
@@ -49,8 +50,7 @@ void RequireActions(std::uint64_t wanted, const hires::skills::ActionSet& own) {
 }  // namespace
 
 SimWorkerParams LoadSimWorkerParams() {
-  RejectUnknownPrivate({"role", "config", "index", "world", "robot", "objects", "uncertainty",
-                        "guard", "action_libraries"});
+  RejectUnknownPrivate(WithSceneParams({"role", "config", "index"}));
   const std::string path =
       PrivateText("config").value_or(ros::package::getPath("hires") + "/config/sim_worker.yaml");
   auto in = hires::base::ParamReader::FromFile(path);
@@ -61,10 +61,7 @@ SimWorkerParams LoadSimWorkerParams() {
       imagination::ReadSetupConfig(imagination::ResolvePath(in.GetString("scene"), path));
   in.RejectUnknownKeys();
   Override("index", PrivateInt("index"), hires::base::Between(1, 256), &params.index);
-  imagination::OverridePaths(PrivateText("world"), PrivateText("robot"), PrivateText("objects"),
-                             PrivateText("uncertainty"), &params.setup);
-  params.setup.has_base_guard = PrivateBool("guard").value_or(params.setup.has_base_guard);
-  params.setup.action_libraries = PrivateActionLibraries();
+  OverrideScene(&params.setup);
   return params;
 }
 
