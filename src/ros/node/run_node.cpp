@@ -1,17 +1,39 @@
 #include "hires/ros/node/run_node.h"
 
+#include <fmt/format.h>
 #include <ros/exceptions.h>
 #include <ros/init.h>
 
 #include <cstdlib>
 
 #include "hires/base/error.h"
+#include "hires/base/log.h"
 #include "hires/ros/master/xmlrpc_master_api.h"
 #include "hires/ros/node/launch_guard.h"
 #include "hires/ros/node/log_sink.h"
 #include "hires/ros/node/master_watch.h"
 
 namespace hires_ros {
+namespace {
+
+constexpr double kClockWait = 20.0;  // [s] simulators may start as late
+
+/// Such a node hangs: no timer comes due, and no transform is of now.
+ros::WallTimer WarnOfMissingClock(ros::NodeHandle* nh) {
+  const auto look = [](const ros::WallTimerEvent& /*event*/) {
+    if (ros::Time::isValid()) return;
+    hires::base::Log(
+        hires::base::LogLevel::kWarn,
+        fmt::format("/use_sim_time is true, and nobody publishes /clock since {} s: this node "
+                    "waits for it; start what simulates or replays the time (rosbag play --clock), "
+                    "or set use_sim_time false and start the nodes again",
+                    kClockWait));
+  };
+  constexpr bool kOnce = true;
+  return nh->createWallTimer(ros::WallDuration(kClockWait), ros::WallTimerCallback(look), kOnce);
+}
+
+}  // namespace
 
 int RunNode(const std::string& name, int argc, char** argv,
             const std::function<void(ros::NodeHandle*)>& play, OnStopSignal on_stop) {
@@ -26,6 +48,7 @@ int RunNode(const std::string& name, int argc, char** argv,
   ros::NodeHandle nh;
   MasterWatch master_watch;
   const ScopedLogSink log_sink;
+  const ros::WallTimer clock_watch = WarnOfMissingClock(&nh);
   try {
     play(&nh);
   } catch (const hires::base::ConfigError& error) {
