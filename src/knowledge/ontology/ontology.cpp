@@ -5,7 +5,7 @@
 #include "hires/base/keys.h"
 #include "hires/base/text.h"
 #include "knowledge/ontology/ontology_builder.h"
-#include "knowledge/ontology/ontology_turtle.h"
+#include "knowledge/ontology/ontology_rdf.h"
 
 namespace hires::knowledge {
 namespace {
@@ -22,17 +22,17 @@ std::string Shortened(std::string_view name) {
 
 Ontology Ontology::FromFiles(const std::vector<std::string>& paths) {
   if (paths.empty()) throw base::ConfigError("no ontology is given; name at least one Turtle file");
-  std::vector<TurtleDocument> documents;
+  std::vector<RdfDocument> documents;
   documents.reserve(paths.size());
   for (const std::string& path : paths) {
-    documents.push_back(ReadTurtle(base::ReadTextFile(path, kMaxTurtleBytes), path));
+    documents.push_back(ReadRdf(base::ReadTextFile(path, kMaxRdfBytes), path));
   }
   return OntologyBuilder(std::move(documents)).Build();
 }
 
 Ontology Ontology::FromTurtle(std::string_view text, const std::string& source) {
-  std::vector<TurtleDocument> documents;
-  documents.push_back(ReadTurtle(text, source));
+  std::vector<RdfDocument> documents;
+  documents.push_back(ReadRdf(text, source));
   return OntologyBuilder(std::move(documents)).Build();
 }
 

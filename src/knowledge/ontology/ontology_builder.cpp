@@ -18,7 +18,7 @@ namespace hires::knowledge {
 namespace {
 
 using ConceptId = Ontology::ConceptId;
-using NodeKind = TurtleNode::Kind;
+using NodeKind = RdfNode::Kind;
 
 // Of concepts, and of relations. The is-a matrix and the closures grow with the square.
 constexpr std::size_t kMaxTerms = 5000;
@@ -50,7 +50,7 @@ std::string Readable(const std::string& iri) {
   return "<" + iri + ">";
 }
 
-std::string Readable(const TurtleNode& node) {
+std::string Readable(const RdfNode& node) {
   switch (node.kind) {
     case NodeKind::kIri:
       return Readable(node.value);
@@ -77,7 +77,7 @@ std::size_t EndOfNamespace(const std::string& iri) {
 std::string LastPart(const std::string& iri) { return iri.substr(EndOfNamespace(iri)); }
 
 /// What a node would be called if it were declared.
-std::string NameForMessage(const TurtleNode& node) {
+std::string NameForMessage(const RdfNode& node) {
   return node.kind == NodeKind::kIri ? LastPart(node.value).substr(0, 80) : Readable(node);
 }
 
@@ -88,16 +88,16 @@ bool IsValueType(const std::string& iri) {
 
 }  // namespace
 
-OntologyBuilder::OntologyBuilder(std::vector<TurtleDocument> documents)
+OntologyBuilder::OntologyBuilder(std::vector<RdfDocument> documents)
     : documents_(std::move(documents)) {}
 
 Ontology OntologyBuilder::Build() {
   concepts_["Thing"] = {{kThing, "owl:Thing", {}}, {}};
   names_[kThing] = "Thing";
-  for (const TurtleDocument& document : documents_) AddPrefixes(document);
-  for (const TurtleDocument& document : documents_) Declare(document);
+  for (const RdfDocument& document : documents_) AddPrefixes(document);
+  for (const RdfDocument& document : documents_) Declare(document);
   DeclareIndividuals();
-  for (const TurtleDocument& document : documents_) Describe(document);
+  for (const RdfDocument& document : documents_) Describe(document);
   CheckBlanks();
   CheckRelations();
   Ontology ontology;
@@ -112,8 +112,8 @@ Ontology OntologyBuilder::Build() {
 
 // Declarations ------------------------------------------------------------------------------------
 
-void OntologyBuilder::Declare(const TurtleDocument& document) {
-  for (const TurtleStatement& statement : document.statements) {
+void OntologyBuilder::Declare(const RdfDocument& document) {
+  for (const RdfStatement& statement : document.statements) {
     if (statement.subject.kind == NodeKind::kBlank) {
       blanks_[{&document, statement.subject.value}].push_back(&statement);
     } else if (statement.predicate == kRdf + "type") {
@@ -122,7 +122,7 @@ void OntologyBuilder::Declare(const TurtleDocument& document) {
   }
 }
 
-void OntologyBuilder::AddPrefixes(const TurtleDocument& document) {
+void OntologyBuilder::AddPrefixes(const RdfDocument& document) {
   for (const auto& [prefix, iri] : document.prefixes) {
     const auto [known, is_new] = prefixes_.emplace(prefix, iri);
     if (is_new || known->second == iri) continue;
@@ -133,7 +133,7 @@ void OntologyBuilder::AddPrefixes(const TurtleDocument& document) {
   }
 }
 
-void OntologyBuilder::DeclareOne(const TurtleStatement& statement, Place place) {
+void OntologyBuilder::DeclareOne(const RdfStatement& statement, Place place) {
   const std::string type = statement.object.value;
   if (type == kOwl + "Ontology") {
     headers_.insert(statement.subject.value);
@@ -242,14 +242,14 @@ std::string OntologyBuilder::QualifiedName(const std::string& iri, Place place) 
 
 // Descriptions ------------------------------------------------------------------------------------
 
-void OntologyBuilder::Describe(const TurtleDocument& document) {
-  for (const TurtleStatement& statement : document.statements) {
+void OntologyBuilder::Describe(const RdfDocument& document) {
+  for (const RdfStatement& statement : document.statements) {
     if (IsPassedOver(statement)) continue;
     DescribeOne(statement, Place{&document, statement.line});
   }
 }
 
-bool OntologyBuilder::IsPassedOver(const TurtleStatement& statement) const {
+bool OntologyBuilder::IsPassedOver(const RdfStatement& statement) const {
   static const std::set<std::string> kRemarks{kRdfs + "label", kRdfs + "comment", kRdfs + "seeAlso",
                                               kRdfs + "isDefinedBy", kOwl + "versionInfo"};
   // Nodes without a name count where a statement refers to them.
@@ -259,7 +259,7 @@ bool OntologyBuilder::IsPassedOver(const TurtleStatement& statement) const {
          headers_.count(statement.subject.value) > 0;
 }
 
-void OntologyBuilder::DescribeOne(const TurtleStatement& statement, Place place) {
+void OntologyBuilder::DescribeOne(const RdfStatement& statement, Place place) {
   const std::string& subject = statement.subject.value;
   if (individuals_.count(subject) > 0 && names_.count(subject) == 0) {
     PassOver("statements about individuals", place);
@@ -276,7 +276,7 @@ void OntologyBuilder::DescribeOne(const TurtleStatement& statement, Place place)
   }
 }
 
-void OntologyBuilder::AddSuperclass(const TurtleStatement& statement, Place place) {
+void OntologyBuilder::AddSuperclass(const RdfStatement& statement, Place place) {
   if (statement.object.kind == NodeKind::kLiteral) FailOnSubset(statement, place);
   const std::string below = RequireConcept(statement.subject, place);
   if (below == "Thing") Fail(place, "owl:Thing stands above every concept, and below none");
@@ -285,7 +285,7 @@ void OntologyBuilder::AddSuperclass(const TurtleStatement& statement, Place plac
   concepts_.at(below).above.push_back({above, place});
 }
 
-void OntologyBuilder::SetDomain(const TurtleStatement& statement, Place place) {
+void OntologyBuilder::SetDomain(const RdfStatement& statement, Place place) {
   RelationTerm& relation = RequireRelation(statement.subject, place);
   if (relation.domain) {
     Fail(place,
@@ -299,13 +299,13 @@ void OntologyBuilder::SetDomain(const TurtleStatement& statement, Place place) {
                         : std::vector<std::string>{RequireConcept(statement.object, place)};
 }
 
-void OntologyBuilder::SetRange(const TurtleStatement& statement, Place place) {
+void OntologyBuilder::SetRange(const RdfStatement& statement, Place place) {
   RelationTerm& relation = RequireRelation(statement.subject, place);
   if (relation.range) {
     Fail(place, fmt::format("relation {} has two ranges, wanted one; write a concept above both",
                             relation.qualified));
   }
-  const TurtleNode& object = statement.object;
+  const RdfNode& object = statement.object;
   if (object.kind != NodeKind::kIri) FailOnSubset(statement, place);
   const bool is_value = Starts(object.value, kXsd);
   if (is_value && !IsValueType(object.value)) {
@@ -317,7 +317,7 @@ void OntologyBuilder::SetRange(const TurtleStatement& statement, Place place) {
   relation.range = is_value ? Readable(object) : RequireConcept(object, place);
 }
 
-OntologyBuilder::RelationTerm& OntologyBuilder::RequireRelation(const TurtleNode& subject,
+OntologyBuilder::RelationTerm& OntologyBuilder::RequireRelation(const RdfNode& subject,
                                                                 Place place) {
   const auto name = names_.find(subject.value);
   const auto found = name == names_.end() ? relations_.end() : relations_.find(name->second);
@@ -326,7 +326,7 @@ OntologyBuilder::RelationTerm& OntologyBuilder::RequireRelation(const TurtleNode
                   "; a relation is declared as owl:ObjectProperty or owl:DatatypeProperty");
 }
 
-std::string OntologyBuilder::RequireConcept(const TurtleNode& node, Place place) const {
+std::string OntologyBuilder::RequireConcept(const RdfNode& node, Place place) const {
   const auto name = names_.find(node.value);
   if (node.kind == NodeKind::kIri && name != names_.end() && concepts_.count(name->second) > 0) {
     return name->second;
@@ -336,10 +336,10 @@ std::string OntologyBuilder::RequireConcept(const TurtleNode& node, Place place)
 }
 
 /// The concepts of `[ a owl:Class ; owl:unionOf ( A B ) ]`.
-std::vector<std::string> OntologyBuilder::UnionOf(const TurtleStatement& statement, Place place) {
+std::vector<std::string> OntologyBuilder::UnionOf(const RdfStatement& statement, Place place) {
   const std::string& node = statement.object.value;
-  const TurtleNode* type = ObjectOf(place, node, kRdf + "type");
-  const TurtleNode* list = ObjectOf(place, node, kOwl + "unionOf");
+  const RdfNode* type = ObjectOf(place, node, kRdf + "type");
+  const RdfNode* list = ObjectOf(place, node, kOwl + "unionOf");
   const bool is_union = type != nullptr && type->value == kOwl + "Class" && list != nullptr &&
                         blanks_.at({place.document, node}).size() == 2;
   if (!is_union) FailOnSubset(statement, place);
@@ -347,13 +347,13 @@ std::vector<std::string> OntologyBuilder::UnionOf(const TurtleStatement& stateme
   return Members(*list, place);
 }
 
-std::vector<std::string> OntologyBuilder::Members(TurtleNode list, Place place) {
+std::vector<std::string> OntologyBuilder::Members(RdfNode list, Place place) {
   std::vector<std::string> members;
   // Each node once: a list that bites its own tail has no end.
   while (list.kind == NodeKind::kBlank &&
          used_blanks_.insert({place.document, list.value}).second) {
-    const TurtleNode* first = ObjectOf(place, list.value, kRdf + "first");
-    const TurtleNode* rest = ObjectOf(place, list.value, kRdf + "rest");
+    const RdfNode* first = ObjectOf(place, list.value, kRdf + "first");
+    const RdfNode* rest = ObjectOf(place, list.value, kRdf + "rest");
     if (first == nullptr || rest == nullptr) break;
     members.push_back(RequireConcept(*first, place));
     list = *rest;
@@ -364,11 +364,11 @@ std::vector<std::string> OntologyBuilder::Members(TurtleNode list, Place place) 
   return members;
 }
 
-const TurtleNode* OntologyBuilder::ObjectOf(Place place, const std::string& blank,
-                                            const std::string& predicate) const {
+const RdfNode* OntologyBuilder::ObjectOf(Place place, const std::string& blank,
+                                         const std::string& predicate) const {
   const auto said = blanks_.find({place.document, blank});
   if (said == blanks_.end()) return nullptr;
-  for (const TurtleStatement* statement : said->second) {
+  for (const RdfStatement* statement : said->second) {
     if (statement->predicate == predicate) return &statement->object;
   }
   return nullptr;
@@ -379,7 +379,7 @@ void OntologyBuilder::CheckBlanks() {
   for (const auto& [id, statements] : blanks_) {
     if (used_blanks_.count(id) > 0) continue;
     const Place place{id.first, statements.front()->line};
-    const TurtleNode* type = ObjectOf(place, id.second, kRdf + "type");
+    const RdfNode* type = ObjectOf(place, id.second, kRdf + "type");
     const bool is_list = ObjectOf(place, id.second, kRdf + "first") != nullptr;
     if (type != nullptr && IsOfOwl(type->value)) {
       PassOver(Readable(type->value), place);
@@ -499,7 +499,7 @@ void OntologyBuilder::Fail(Place place, const std::string& what) {
   throw base::ConfigError(fmt::format("{}: {}; line {}", place.document->source, what, place.line));
 }
 
-void OntologyBuilder::FailOnSubset(const TurtleStatement& statement, Place place) {
+void OntologyBuilder::FailOnSubset(const RdfStatement& statement, Place place) {
   Fail(place,
        fmt::format("{} {} {} is beyond what is read of OWL: owl:Class with rdfs:subClassOf a named "
                    "class; owl:ObjectProperty, owl:DatatypeProperty, owl:FunctionalProperty with "
@@ -519,7 +519,7 @@ void OntologyBuilder::FailOnSameName(const Term& known, const Term& other) {
                    other.qualified, known.qualified, before));
 }
 
-void OntologyBuilder::FailOnKindOfRange(const RelationTerm& relation, const TurtleNode& range,
+void OntologyBuilder::FailOnKindOfRange(const RelationTerm& relation, const RdfNode& range,
                                         Place place) {
   const bool is_link = relation.is_link.value_or(true);
   Fail(place, fmt::format("relation {} is an owl:{}, its range {} does not fit that; wanted {}",

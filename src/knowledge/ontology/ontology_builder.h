@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "hires/knowledge/ontology.h"
-#include "knowledge/ontology/ontology_turtle.h"
+#include "knowledge/ontology/ontology_rdf.h"
 
 namespace hires::knowledge {
 
@@ -17,13 +17,13 @@ namespace hires::knowledge {
 /// then what is said about the declared, then the numbers and closures. Used once.
 class OntologyBuilder {
  public:
-  explicit OntologyBuilder(std::vector<TurtleDocument> documents);
+  explicit OntologyBuilder(std::vector<RdfDocument> documents);
   /// @throws ConfigError, see Ontology::FromFiles.
   Ontology Build();
 
  private:
   struct Place {
-    const TurtleDocument* document{nullptr};
+    const RdfDocument* document{nullptr};
     int line{0};
   };
   struct Term {
@@ -49,11 +49,11 @@ class OntologyBuilder {
     int first_line{0};
     std::map<std::string, int> kinds;  // "owl:disjointWith" -> how often
   };
-  using BlankId = std::pair<const TurtleDocument*, std::string>;
+  using BlankId = std::pair<const RdfDocument*, std::string>;
 
-  void Declare(const TurtleDocument& document);
-  void AddPrefixes(const TurtleDocument& document);
-  void DeclareOne(const TurtleStatement& statement, Place place);
+  void Declare(const RdfDocument& document);
+  void AddPrefixes(const RdfDocument& document);
+  void DeclareOne(const RdfStatement& statement, Place place);
   void DeclareIndividuals();
   void PassOver(const std::string& kind, Place place);
   void WarnOfPassedOver() const;
@@ -63,18 +63,18 @@ class OntologyBuilder {
   Term NewTerm(const std::string& iri, Place place) const;
   std::string QualifiedName(const std::string& iri, Place place) const;
 
-  void Describe(const TurtleDocument& document);
-  bool IsPassedOver(const TurtleStatement& statement) const;
-  void DescribeOne(const TurtleStatement& statement, Place place);
-  void AddSuperclass(const TurtleStatement& statement, Place place);
-  void SetDomain(const TurtleStatement& statement, Place place);
-  void SetRange(const TurtleStatement& statement, Place place);
-  RelationTerm& RequireRelation(const TurtleNode& node, Place place);
-  std::string RequireConcept(const TurtleNode& node, Place place) const;
-  std::vector<std::string> UnionOf(const TurtleStatement& statement, Place place);
-  std::vector<std::string> Members(TurtleNode list, Place place);
-  const TurtleNode* ObjectOf(Place place, const std::string& blank,
-                             const std::string& predicate) const;
+  void Describe(const RdfDocument& document);
+  bool IsPassedOver(const RdfStatement& statement) const;
+  void DescribeOne(const RdfStatement& statement, Place place);
+  void AddSuperclass(const RdfStatement& statement, Place place);
+  void SetDomain(const RdfStatement& statement, Place place);
+  void SetRange(const RdfStatement& statement, Place place);
+  RelationTerm& RequireRelation(const RdfNode& node, Place place);
+  std::string RequireConcept(const RdfNode& node, Place place) const;
+  std::vector<std::string> UnionOf(const RdfStatement& statement, Place place);
+  std::vector<std::string> Members(RdfNode list, Place place);
+  const RdfNode* ObjectOf(Place place, const std::string& blank,
+                          const std::string& predicate) const;
   void CheckRelations() const;
   void CheckBlanks();
 
@@ -86,24 +86,24 @@ class OntologyBuilder {
   static void FillHash(Ontology* ontology);
 
   [[noreturn]] static void Fail(Place place, const std::string& what);
-  [[noreturn]] static void FailOnSubset(const TurtleStatement& statement, Place place);
+  [[noreturn]] static void FailOnSubset(const RdfStatement& statement, Place place);
   [[noreturn]] static void FailOnSameName(const Term& known, const Term& other);
-  [[noreturn]] static void FailOnKindOfRange(const RelationTerm& relation, const TurtleNode& range,
+  [[noreturn]] static void FailOnKindOfRange(const RelationTerm& relation, const RdfNode& range,
                                              Place place);
   [[noreturn]] void FailOnCycle(const std::map<std::string, std::size_t>& open) const;
 
-  std::vector<TurtleDocument> documents_;
+  std::vector<RdfDocument> documents_;
   std::map<std::string, std::string> prefixes_;  // of all documents
   std::map<std::string, ConceptTerm> concepts_;  // by name
   std::map<std::string, RelationTerm> relations_;
-  std::map<std::string, std::string> names_;                     // IRI of what is declared -> name
-  std::set<std::string> headers_;                                // IRIs of owl:Ontology
-  std::set<std::string> annotations_;                            // IRIs of owl:AnnotationProperty
-  std::set<std::string> individuals_;                            // their IRIs
-  std::vector<std::pair<const TurtleStatement*, Place>> typed_;  // by a class that is not OWL's
-  std::map<const TurtleDocument*, PassedOver> passed_over_;
-  std::map<BlankId, std::vector<const TurtleStatement*>> blanks_;  // what is said about them
-  std::set<BlankId> used_blanks_;                                  // that somebody referred to
+  std::map<std::string, std::string> names_;                  // IRI of what is declared -> name
+  std::set<std::string> headers_;                             // IRIs of owl:Ontology
+  std::set<std::string> annotations_;                         // IRIs of owl:AnnotationProperty
+  std::set<std::string> individuals_;                         // their IRIs
+  std::vector<std::pair<const RdfStatement*, Place>> typed_;  // by a class that is not OWL's
+  std::map<const RdfDocument*, PassedOver> passed_over_;
+  std::map<BlankId, std::vector<const RdfStatement*>> blanks_;  // what is said about them
+  std::set<BlankId> used_blanks_;                               // that somebody referred to
 };
 
 }  // namespace hires::knowledge

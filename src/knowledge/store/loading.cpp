@@ -10,8 +10,8 @@
 #include <variant>
 
 #include "hires/base/error.h"
+#include "hires/base/faults.h"
 #include "hires/base/radians.h"
-#include "hires/base/short_text.h"
 #include "hires/base/text.h"
 #include "knowledge/fluents/store_check.h"
 
@@ -90,7 +90,7 @@ void CheckLinks(const Fluent& fluent, const ConceptsOf& concepts, const Ontology
 /// Tells of all fluents that cannot be, each with its place in the file.
 void CheckFluents(const KnowledgeFile& file, const Ontology& ontology) {
   const ConceptsOf concepts = ConceptsIn(file);
-  std::vector<std::string> faults;
+  base::Faults faults;
   for (std::size_t i = 0; i < file.fluents.size(); ++i) {
     try {
       CheckFluent(file.fluents[i], ontology);
@@ -98,11 +98,10 @@ void CheckFluents(const KnowledgeFile& file, const Ontology& ontology) {
       CheckLinks(file.fluents[i], concepts, ontology);
     } catch (const base::ConfigError& error) {
       const std::string place = i < file.places.size() ? file.places[i] + ": " : "";
-      faults.push_back((file.source.empty() ? "" : file.source + ": ") + place + error.what());
+      faults.Add((file.source.empty() ? "" : file.source + ": ") + place + error.what());
     }
   }
-  if (faults.empty()) return;
-  throw base::ConfigError(base::Join(base::FirstLines(std::move(faults)), "\n"));
+  faults.Require();
 }
 
 LoadSummary Summarize(const KnowledgeFile& file, std::size_t num_fluents,

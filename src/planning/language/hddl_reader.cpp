@@ -8,7 +8,6 @@
 #include "hires/base/text.h"
 #include "hires/planning/datum_reader.h"
 #include "hires/planning/domain.h"
-#include "planning/language/faults.h"
 #include "planning/language/hddl_effect.h"
 #include "planning/language/hddl_formula.h"
 #include "planning/language/hddl_network.h"
@@ -114,7 +113,7 @@ class DomainReader {
     const Sections sections =
         ReadSections(spot_, definition_.form, DomainSections(), {":task", ":method", ":action"});
     ReadDeclarations(sections);
-    Faults faults;
+    base::Faults faults;
     for (const Datum* form : AllOf(sections, ":action")) {
       faults.Collect([&] { ReadAction(*form); });
     }
@@ -329,7 +328,7 @@ class ProblemReader {
       ReadObjects(spot_.Within("(:objects ...)"), *section, &vocabulary_);
     }
     vocabulary_.has_all_objects = true;
-    Faults faults;
+    base::Faults faults;
     faults.Collect([&] { CheckOpenObjects(spot_, domain_.source, vocabulary_); });
     faults.Collect([&] { ReadTasks(sections); });
     if (const Datum* section = OneOf(sections, ":goal")) {
@@ -413,7 +412,7 @@ class ProblemReader {
                fmt::format("{} came, wanted (:metric minimize (total-cost))", Excerpt(section)));
   }
 
-  void ReadInit(const Datum& section, Faults* faults) {
+  void ReadInit(const Datum& section, base::Faults* faults) {
     const HddlSpot spot = spot_.Within("(:init ...)");
     for (std::size_t i = 1; i < section.items.size(); ++i) {
       faults->Collect([&] { ReadInitial(spot, section.items[i]); });

@@ -8,10 +8,10 @@
 #include <utility>
 
 #include "hires/base/error.h"
+#include "hires/base/faults.h"
 #include "hires/base/spelling.h"
 #include "hires/base/text.h"
 #include "hires/planning/datum_reader.h"
-#include "planning/language/faults.h"
 #include "planning/language/shop2_parts.h"
 
 namespace hires::planning {
@@ -188,7 +188,7 @@ Domain ReadDomain(Datum form, bool is_plain, const std::string& source) {
   }
   // Only Lisp has other forms.
   if (is_plain) shop2::WriteBareTerms(source, &form.items[2], &domain.warnings);
-  Faults faults;
+  base::Faults faults;
   for (const Datum& item : items.items) faults.Collect([&] { ReadItem(in, item, &domain); });
   faults.Require();
   shop2::CheckDomain(&domain);
@@ -316,7 +316,7 @@ bool HoldsDefinition(const Datum& form) {
 }  // namespace
 
 void RequireOneWithoutFault(const std::vector<Problem>& problems) {
-  Faults faults;
+  base::Faults faults;
   for (const Problem& problem : problems) {
     if (problem.fault.empty()) return;
     faults.Add(problem.fault);

@@ -8,27 +8,27 @@
 namespace hires::knowledge {
 
 /// What a statement in Turtle is about.
-struct TurtleNode {
+struct RdfNode {
   enum class Kind { kIri, kBlank, kLiteral };
   Kind kind{Kind::kIri};
   std::string value;  ///< IRI, blank node's label, or text of the literal
 };
 
 /// One statement in Turtle.
-struct TurtleStatement {
-  TurtleNode subject;
+struct RdfStatement {
+  RdfNode subject;
   std::string predicate;  ///< IRI
-  TurtleNode object;
+  RdfNode object;
   int line{0};  ///< from 1; in which its last word stands, or the next one
 };
 
-struct TurtleDocument {
+struct RdfDocument {
   std::string source;
-  std::vector<TurtleStatement> statements;
+  std::vector<RdfStatement> statements;
   std::map<std::string, std::string> prefixes;  ///< "race" -> IRI up to the name
 };
 
-constexpr std::size_t kMaxTurtleBytes = 4u << 20;
+constexpr std::size_t kMaxRdfBytes = 4u << 20;
 
 /// Reads Turtle with raptor, which is kept from the network and from every file. Safe to call from
 /// any thread.
@@ -36,6 +36,6 @@ constexpr std::size_t kMaxTurtleBytes = 4u << 20;
 /// meanings,
 ///   more than 4 MB, 100 nested brackets or 200,000 statements, an IRI of more than 200 bytes, a
 ///   text of more than 64 KB.
-TurtleDocument ReadTurtle(std::string_view text, const std::string& source);
+RdfDocument ReadRdf(std::string_view text, const std::string& source);
 
 }  // namespace hires::knowledge

@@ -6,7 +6,7 @@
 
 #include "hires/base/error.h"
 
-namespace hires::planning {
+namespace hires::base {
 
 /// What is wrong with the parts of a file, told at once.
 class Faults {
@@ -16,17 +16,17 @@ class Faults {
   void Collect(const Read& read) {
     try {
       read();
-    } catch (const base::ConfigError& error) {
+    } catch (const ConfigError& error) {
       texts_.emplace_back(error.what());
     }
   }
   void Add(std::string text) { texts_.push_back(std::move(text)); }
 
-  /// @throws base::ConfigError with a line for each fault where there is any.
+  /// @throws ConfigError with a line for each fault where there is any.
   void Require() const;
 
  private:
   std::vector<std::string> texts_;
 };
 
-}  // namespace hires::planning
+}  // namespace hires::base

@@ -1,4 +1,4 @@
-#include "knowledge/ontology/ontology_turtle.h"
+#include "knowledge/ontology/ontology_rdf.h"
 
 #include <fmt/format.h>
 #include <raptor2/raptor2.h>
@@ -152,21 +152,21 @@ std::string Text(const unsigned char* text) {
 
 std::string Text(raptor_uri* uri) { return Text(raptor_uri_as_string(uri)); }
 
-TurtleNode ToNode(const raptor_term& term) {
+RdfNode ToNode(const raptor_term& term) {
   switch (term.type) {
     case RAPTOR_TERM_TYPE_URI:
-      return {TurtleNode::Kind::kIri, Text(term.value.uri)};
+      return {RdfNode::Kind::kIri, Text(term.value.uri)};
     case RAPTOR_TERM_TYPE_BLANK:
-      return {TurtleNode::Kind::kBlank, Text(term.value.blank.string)};
+      return {RdfNode::Kind::kBlank, Text(term.value.blank.string)};
     default:
-      return {TurtleNode::Kind::kLiteral, Text(term.value.literal.string)};
+      return {RdfNode::Kind::kLiteral, Text(term.value.literal.string)};
   }
 }
 
 /// What raptor's callbacks write to. They are called from C, so they must not throw: the first
 /// error is kept and told afterwards.
 struct Parse {
-  TurtleDocument* document;
+  RdfDocument* document;
   const TurtleScan* scan;
   std::size_t num_prefixes{0};  // seen up to now
   raptor_parser* parser{nullptr};
@@ -184,7 +184,7 @@ struct Parse {
 
 void OnStatement(void* user_data, raptor_statement* statement) {
   auto& parse = *static_cast<Parse*>(user_data);
-  std::vector<TurtleStatement>& statements = parse.document->statements;
+  std::vector<RdfStatement>& statements = parse.document->statements;
   if (statements.size() >= kMaxStatements) {
     return parse.Stop(fmt::format("more than {} statements", kMaxStatements), parse.Line());
   }
@@ -247,13 +247,13 @@ void RunRaptor(std::string_view text, Parse* parse) {
 
 }  // namespace
 
-TurtleDocument ReadTurtle(std::string_view text, const std::string& source) {
-  if (text.size() > kMaxTurtleBytes) {
+RdfDocument ReadRdf(std::string_view text, const std::string& source) {
+  if (text.size() > kMaxRdfBytes) {
     throw base::ConfigError(fmt::format("{}: {} bytes of Turtle, at most {} are read", source,
-                                        text.size(), kMaxTurtleBytes));
+                                        text.size(), kMaxRdfBytes));
   }
   const TurtleScan scan(text, source);
-  TurtleDocument document;
+  RdfDocument document;
   document.source = source;
   Parse parse{&document, &scan};
   RunRaptor(text, &parse);
