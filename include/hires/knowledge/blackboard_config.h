@@ -14,7 +14,7 @@ namespace hires::knowledge {
 /// config/blackboard.yaml: where the Blackboard keeps what it is told, what it knows at first, and
 /// how much it takes on at once.
 struct BlackboardConfig {
-  std::vector<std::string> ontology;   ///< paths, Turtle
+  std::vector<std::string> ontology;   ///< paths, Turtle or RDF/XML
   std::string store;                   ///< path, or ":memory:"
   StoreOptions options;                ///< durability, cache, bound of the file
   OldStoreLimits old_runs;             ///< which stores of earlier runs are kept beside it

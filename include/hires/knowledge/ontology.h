@@ -10,9 +10,10 @@
 
 namespace hires::knowledge {
 
-/// Concepts and relations, from OWL in Turtle; docs/ontology.md says what of OWL is read. Constant
-/// once read. Names are the last parts of the IRIs ("Mug" of race:Mug); they compare exactly, and
-/// no two concepts or relations share one. Every concept is below owl:Thing, named "Thing".
+/// Concepts and relations, from OWL in Turtle or RDF/XML; docs/ontology.md says what of OWL is
+/// read. Constant once read. Names are the last parts of the IRIs ("Mug" of race:Mug); they compare
+/// exactly, and no two concepts or relations share one. Every concept is below owl:Thing, named
+/// "Thing".
 class Ontology {
  public:
   using ConceptId = std::uint32_t;
@@ -20,13 +21,12 @@ class Ontology {
 
   /// Reads the files as one ontology: each may build on what any other declares. Nothing else is
   /// read, and nothing fetched.
-  /// @throws ConfigError naming file, line and what is wrong: unreadable Turtle, a cycle of
-  ///   subclasses, a relation without range, an undeclared superclass (with the nearest names),
-  ///   names and types that nothing declares, more than 16 MB, 5000 concepts or relations each, 100
-  ///   nested brackets.
+  /// @throws ConfigError naming file, line and what is wrong, all at once: text that cannot be
+  ///   read, a cycle of subclasses, names of the files' own vocabulary that nothing declares (with
+  ///   the nearest ones), more than 4 MB, 5000 concepts or relations each, 100 nested brackets.
   static Ontology FromFiles(const std::vector<std::string>& paths);
   /// @param source  Stands for the file name in messages.
-  static Ontology FromTurtle(std::string_view text, const std::string& source);
+  static Ontology FromText(std::string_view text, const std::string& source);
 
   /// Concepts are numbered from 0 in the order of their names.
   ConceptId Find(std::string_view name) const;     ///< kUnknown if there is none

@@ -13,7 +13,7 @@ struct ContextFiles {
   std::string world;
   std::string robot;                  ///< as robot::LoadAnyRobot
   std::string objects;                ///< the catalogue of loose objects
-  std::vector<std::string> ontology;  ///< Turtle files
+  std::vector<std::string> ontology;  ///< Turtle or RDF/XML files
   world::StandingCriterion standing;
   ClassifyParams classify;
 };

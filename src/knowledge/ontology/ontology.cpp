@@ -30,7 +30,7 @@ Ontology Ontology::FromFiles(const std::vector<std::string>& paths) {
   return OntologyBuilder(std::move(documents)).Build();
 }
 
-Ontology Ontology::FromTurtle(std::string_view text, const std::string& source) {
+Ontology Ontology::FromText(std::string_view text, const std::string& source) {
   std::vector<RdfDocument> documents;
   documents.push_back(ReadRdf(text, source));
   return OntologyBuilder(std::move(documents)).Build();

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cctype>
+#include <iterator>
 #include <set>
 #include <utility>
 
@@ -12,6 +13,7 @@
 #include "hires/base/hash.h"
 #include "hires/base/keys.h"
 #include "hires/base/log.h"
+#include "hires/base/short_text.h"
 #include "hires/base/text.h"
 
 namespace hires::knowledge {
@@ -74,11 +76,35 @@ std::size_t EndOfNamespace(const std::string& iri) {
   return end == std::string::npos ? 0 : end + 1;
 }
 
+std::string NamespaceOf(const std::string& iri) { return iri.substr(0, EndOfNamespace(iri)); }
 std::string LastPart(const std::string& iri) { return iri.substr(EndOfNamespace(iri)); }
 
 /// What a node would be called if it were declared.
 std::string NameForMessage(const RdfNode& node) {
   return node.kind == NodeKind::kIri ? LastPart(node.value).substr(0, 80) : Readable(node);
+}
+
+bool IsClass(const std::string& type) { return type == kOwl + "Class" || type == kRdfs + "Class"; }
+
+/// Whether only relations between instances can be of a type of OWL, beside owl:ObjectProperty.
+bool IsKindOfLink(const std::string& type) {
+  static const std::set<std::string> kKinds{
+      kOwl + "TransitiveProperty",        kOwl + "SymmetricProperty",
+      kOwl + "AsymmetricProperty",        kOwl + "ReflexiveProperty",
+      kOwl + "InverseFunctionalProperty", kOwl + "IrreflexiveProperty"};
+  return kKinds.count(type) > 0;
+}
+
+/// Whether what is of a type of OWL is a concept or a relation.
+bool Declares(const std::string& type) {
+  return IsClass(type) || IsKindOfLink(type) || type == kOwl + "ObjectProperty" ||
+         type == kOwl + "DatatypeProperty" || type == kOwl + "FunctionalProperty";
+}
+
+/// Whether an IRI stands for values, be they of a type that is read or not.
+bool IsOfValues(const std::string& iri) {
+  return Starts(iri, kXsd) || iri == kRdfs + "Literal" || Starts(iri, kRdf) ||
+         iri == kOwl + "real" || iri == kOwl + "rational";
 }
 
 bool IsValueType(const std::string& iri) {
@@ -94,12 +120,13 @@ OntologyBuilder::OntologyBuilder(std::vector<RdfDocument> documents)
 Ontology OntologyBuilder::Build() {
   concepts_["Thing"] = {{kThing, "owl:Thing", {}}, {}};
   names_[kThing] = "Thing";
-  for (const RdfDocument& document : documents_) AddPrefixes(document);
+  names_[kRdfs + "Resource"] = "Thing";
+  AddPrefixes();
+  InventPrefixes();
   for (const RdfDocument& document : documents_) Declare(document);
-  DeclareIndividuals();
-  for (const RdfDocument& document : documents_) Describe(document);
-  CheckBlanks();
-  CheckRelations();
+  faults_.Require();  // what is not declared would be unknown wherever it is named
+  DescribeAll();
+  faults_.Require();
   Ontology ontology;
   NumberConcepts(&ontology);
   FillIsA(&ontology);
@@ -117,48 +144,116 @@ void OntologyBuilder::Declare(const RdfDocument& document) {
     if (statement.subject.kind == NodeKind::kBlank) {
       blanks_[{&document, statement.subject.value}].push_back(&statement);
     } else if (statement.predicate == kRdf + "type") {
-      DeclareOne(statement, {&document, statement.line});
+      faults_.Collect([&] { DeclareOne(statement, {&document, statement.line}); });
     }
   }
 }
 
-void OntologyBuilder::AddPrefixes(const RdfDocument& document) {
-  for (const auto& [prefix, iri] : document.prefixes) {
-    const auto [known, is_new] = prefixes_.emplace(prefix, iri);
-    if (is_new || known->second == iri) continue;
-    throw base::ConfigError(
-        fmt::format("{}: prefix '{}:' is <{}>, and <{}> in a file before; all "
-                    "files of one ontology use the same prefixes",
-                    document.source, prefix, iri, known->second));
+/// The empty prefix is another one in each file, unless all mean the same.
+void OntologyBuilder::AddPrefixes() {
+  bool is_empty_one = true;
+  for (const RdfDocument& document : documents_) {
+    for (const auto& [prefix, iri] : document.prefixes) {
+      const auto [known, is_new] = prefixes_.emplace(prefix, iri);
+      if (is_new || known->second == iri) continue;
+      if (prefix.empty()) {
+        is_empty_one = false;
+        continue;
+      }
+      faults_.Add(
+          fmt::format("{}: prefix '{}:' is <{}>, and <{}> in a file before; all files of one "
+                      "ontology use the same prefixes",
+                      document.source, prefix, iri, known->second));
+    }
   }
+  if (!is_empty_one) prefixes_.erase("");
+}
+
+/// Queries name concepts and relations by a prefix: namespaces that have none get one, in the order
+/// of their names.
+void OntologyBuilder::InventPrefixes() {
+  std::set<std::string> bare;
+  for (const RdfDocument& document : documents_) {
+    for (const RdfStatement& statement : document.statements) {
+      const bool declares =
+          statement.predicate == kRdf + "type" && Declares(statement.object.value);
+      if (declares && statement.subject.kind == NodeKind::kIri && statement.subject.value != kThing)
+        bare.insert(NamespaceOf(statement.subject.value));
+    }
+  }
+  for (const auto& [prefix, iri] : prefixes_) bare.erase(iri);
+  std::vector<std::string> invented;
+  int number = 0;
+  for (const std::string& iri : bare) {
+    std::string prefix;
+    do {
+      prefix = fmt::format("ns{}", ++number);
+    } while (prefixes_.count(prefix) > 0);
+    prefixes_[prefix] = iri;
+    invented.push_back(fmt::format("{}: for <{}>", prefix, iri));
+  }
+  if (invented.empty()) return;
+  base::Log(base::LogLevel::kWarn,
+            fmt::format("ontology: what has no prefix gets one, by which queries name it: {}",
+                        base::Join(base::FirstLines(std::move(invented)), ", ")));
 }
 
 void OntologyBuilder::DeclareOne(const RdfStatement& statement, Place place) {
   const std::string type = statement.object.value;
   if (type == kOwl + "Ontology") {
     headers_.insert(statement.subject.value);
-  } else if (type == kOwl + "Class" || type == kRdfs + "Class") {
+  } else if (IsClass(type)) {
     DeclareConcept(statement.subject.value, place);
-  } else if (type == kOwl + "ObjectProperty" || type == kOwl + "DatatypeProperty" ||
-             type == kOwl + "FunctionalProperty") {
+  } else if (Declares(type)) {
     DeclareRelation(statement.subject.value, type, place);
   } else if (type == kOwl + "AnnotationProperty") {
     annotations_.insert(statement.subject.value);
   } else if (IsOfOwl(type)) {
-    if (type == kOwl + "NamedIndividual") individuals_.insert(statement.subject.value);
+    (type == kOwl + "NamedIndividual" ? individuals_ : others_).insert(statement.subject.value);
     PassOver(Readable(type), place);
   } else {
     typed_.emplace_back(&statement, place);
   }
 }
 
-/// Only now all classes are known: what is of another type is a slip.
+/// Only now all classes are known: what is of another type of the files' own names is a slip.
 void OntologyBuilder::DeclareIndividuals() {
   for (const auto& [statement, place] : typed_) {
-    const auto name = names_.find(statement->object.value);
-    if (name == names_.end() || concepts_.count(name->second) == 0) FailOnSubset(*statement, place);
+    const Place& where = place;  // captured
+    const RdfNode& type = statement->object;
+    if (type.kind == NodeKind::kIri && !IsForeign(type, place))
+      faults_.Collect([&] { RequireConcept(type, where); });
     if (individuals_.insert(statement->subject.value).second) PassOver("individuals", place);
   }
+}
+
+void OntologyBuilder::DescribeAll() {
+  for (const auto& [iri, name] : names_) {
+    if (!IsOfOwl(iri)) own_namespaces_.insert(NamespaceOf(iri));
+  }
+  for (const RdfDocument& document : documents_) {
+    if (ImportsMore(document)) importing_.insert(&document);
+  }
+  DeclareIndividuals();
+  for (const RdfDocument& document : documents_) Describe(document);
+  CheckBlanks();
+  CheckRelations();
+}
+
+/// Of a vocabulary of which the files declare nothing, or of a file that is imported and not given.
+bool OntologyBuilder::IsForeign(const RdfNode& node, Place place) const {
+  if (node.kind != NodeKind::kIri || names_.count(node.value) > 0 || IsOfOwl(node.value))
+    return false;
+  return others_.count(node.value) > 0 || own_namespaces_.count(NamespaceOf(node.value)) == 0 ||
+         importing_.count(place.document) > 0;
+}
+
+bool OntologyBuilder::ImportsMore(const RdfDocument& document) const {
+  return std::any_of(document.statements.begin(), document.statements.end(),
+                     [&](const RdfStatement& statement) {
+                       return statement.predicate == kOwl + "imports" &&
+                              headers_.count(statement.object.value) == 0;
+                     });
 }
 
 void OntologyBuilder::PassOver(const std::string& kind, Place place) {
@@ -182,7 +277,7 @@ void OntologyBuilder::WarnOfPassedOver() const {
 }
 
 void OntologyBuilder::DeclareConcept(const std::string& iri, Place place) {
-  if (iri == kThing) return;
+  if (iri == kThing || iri == kRdfs + "Resource" || !CanBeNamed(iri, place)) return;
   const Term term = NewTerm(iri, place);
   const std::string name = LastPart(iri);
   if (const auto same = relations_.find(name); same != relations_.end()) {
@@ -191,24 +286,27 @@ void OntologyBuilder::DeclareConcept(const std::string& iri, Place place) {
   const auto [known, is_new] = concepts_.emplace(name, ConceptTerm{term, {}});
   if (known->second.iri != iri) FailOnSameName(known->second, term);
   names_[iri] = name;
-  if (concepts_.size() > kMaxTerms) Fail(place, kTooMany);
+  if (is_new && concepts_.size() == kMaxTerms + 1) Fail(place, kTooMany);
 }
 
 void OntologyBuilder::DeclareRelation(const std::string& iri, const std::string& type,
                                       Place place) {
+  if (!CanBeNamed(iri, place)) return;
   const Term term = NewTerm(iri, place);
   const std::string name = LastPart(iri);
   if (const auto same = concepts_.find(name); same != concepts_.end()) {
     FailOnSameName(same->second, term);
   }
-  const auto [known, is_new] = relations_.emplace(name, RelationTerm{term, {}, false, {}, {}});
+  const auto [known, is_new] =
+      relations_.emplace(name, RelationTerm{term, {}, false, {}, {}, false});
   if (known->second.iri != iri) FailOnSameName(known->second, term);
   names_[iri] = name;
-  if (relations_.size() > kMaxTerms) Fail(place, kTooMany);
+  if (is_new && relations_.size() == kMaxTerms + 1) Fail(place, kTooMany);
   if (type == kOwl + "FunctionalProperty") {
     known->second.functional = true;
   } else {
-    SetIsLink(&known->second, type == kOwl + "ObjectProperty", place);
+    SetIsLink(&known->second, type != kOwl + "DatatypeProperty", place);
+    if (IsKindOfLink(type)) PassOver(Readable(type), place);
   }
 }
 
@@ -221,12 +319,19 @@ void OntologyBuilder::SetIsLink(RelationTerm* relation, bool is_link, Place plac
   relation->is_link = is_link;
 }
 
-OntologyBuilder::Term OntologyBuilder::NewTerm(const std::string& iri, Place place) const {
-  if (!IsName(LastPart(iri))) {
-    Fail(place, fmt::format("the last part of <{}> is no name; wanted a letter, then letters, "
-                            "digits, '_' or '-', 200 at most",
-                            iri.substr(0, 200)));
+/// What fluents cannot name is of no use.
+bool OntologyBuilder::CanBeNamed(const std::string& iri, Place place) {
+  if (IsName(LastPart(iri))) return true;
+  if (others_.insert(iri).second) {
+    PassOver(
+        "concepts and relations whose last part is no name (a letter, then letters, digits, '_' or "
+        "'-', 200 at most)",
+        place);
   }
+  return false;
+}
+
+OntologyBuilder::Term OntologyBuilder::NewTerm(const std::string& iri, Place place) const {
   return {iri, QualifiedName(iri, place), place};
 }
 
@@ -236,8 +341,7 @@ std::string OntologyBuilder::QualifiedName(const std::string& iri, Place place) 
   for (auto prefix = prefixes_.rbegin(); prefix != prefixes_.rend(); ++prefix) {
     if (prefix->second == iri.substr(0, end)) return prefix->first + ":" + iri.substr(end);
   }
-  Fail(place, fmt::format("<{}> has no prefix; declare one for <{}>, queries name it by that", iri,
-                          iri.substr(0, end)));
+  Fail(place, fmt::format("<{}> has no prefix", iri));  // InventPrefixes() leaves none without
 }
 
 // Descriptions ------------------------------------------------------------------------------------
@@ -245,7 +349,7 @@ std::string OntologyBuilder::QualifiedName(const std::string& iri, Place place) 
 void OntologyBuilder::Describe(const RdfDocument& document) {
   for (const RdfStatement& statement : document.statements) {
     if (IsPassedOver(statement)) continue;
-    DescribeOne(statement, Place{&document, statement.line});
+    faults_.Collect([&] { DescribeOne(statement, Place{&document, statement.line}); });
   }
 }
 
@@ -263,6 +367,10 @@ void OntologyBuilder::DescribeOne(const RdfStatement& statement, Place place) {
   const std::string& subject = statement.subject.value;
   if (individuals_.count(subject) > 0 && names_.count(subject) == 0) {
     PassOver("statements about individuals", place);
+  } else if (IsForeign(statement.subject, place)) {
+    PassOver(others_.count(subject) > 0 ? "statements about what is passed over"
+                                        : "statements about what no file declares",
+             place);
   } else if (statement.predicate == kRdfs + "subClassOf") {
     AddSuperclass(statement, place);
   } else if (statement.predicate == kRdfs + "domain") {
@@ -272,7 +380,7 @@ void OntologyBuilder::DescribeOne(const RdfStatement& statement, Place place) {
   } else if (IsOfOwl(statement.predicate)) {
     PassOver(Readable(statement.predicate), place);
   } else {
-    FailOnSubset(statement, place);
+    PassOver("statements by what is no word of OWL", place);
   }
 }
 
@@ -281,6 +389,9 @@ void OntologyBuilder::AddSuperclass(const RdfStatement& statement, Place place) 
   const std::string below = RequireConcept(statement.subject, place);
   if (below == "Thing") Fail(place, "owl:Thing stands above every concept, and below none");
   if (statement.object.kind == NodeKind::kBlank) return;  // a restriction; CheckBlanks tells
+  if (statement.object.value == statement.subject.value) return;  // as reasoners write
+  if (IsForeign(statement.object, place))
+    return PassOver("superclasses that no file declares", place);
   const std::string above = RequireConcept(statement.object, place);
   concepts_.at(below).above.push_back({above, place});
 }
@@ -294,9 +405,13 @@ void OntologyBuilder::SetDomain(const RdfStatement& statement, Place place) {
                      relation.qualified));
   }
   if (statement.object.kind == NodeKind::kLiteral) FailOnSubset(statement, place);
-  relation.domain = statement.object.kind == NodeKind::kBlank
-                        ? UnionOf(statement, place)
-                        : std::vector<std::string>{RequireConcept(statement.object, place)};
+  if (statement.object.kind == NodeKind::kBlank) {
+    relation.domain = UnionOf(statement, place);
+  } else if (!IsForeign(statement.object, place)) {
+    relation.domain = {RequireConcept(statement.object, place)};
+  }
+  if (!relation.domain)
+    PassOver("domains beyond a concept or a union of them (any is taken)", place);
 }
 
 void OntologyBuilder::SetRange(const RdfStatement& statement, Place place) {
@@ -305,16 +420,41 @@ void OntologyBuilder::SetRange(const RdfStatement& statement, Place place) {
     Fail(place, fmt::format("relation {} has two ranges, wanted one; write a concept above both",
                             relation.qualified));
   }
-  const RdfNode& object = statement.object;
-  if (object.kind != NodeKind::kIri) FailOnSubset(statement, place);
-  const bool is_value = Starts(object.value, kXsd);
-  if (is_value && !IsValueType(object.value)) {
-    Fail(place,
-         fmt::format("relation {} has values of {}, wanted one of xsd:{}", relation.qualified,
-                     Readable(object), fmt::join(kDeclaredTypes, ", xsd:")));
+  if (statement.object.kind == NodeKind::kLiteral) FailOnSubset(statement, place);
+  if (!relation.is_link && statement.object.kind == NodeKind::kIri)
+    relation.is_link = !IsOfValues(statement.object.value);
+  if (relation.is_link.value_or(true)) {
+    SetRangeOfLinks(statement, place, &relation);
+  } else {
+    SetRangeOfValues(statement, place, &relation);
   }
-  if (is_value == relation.is_link.value_or(!is_value)) FailOnKindOfRange(relation, object, place);
-  relation.range = is_value ? Readable(object) : RequireConcept(object, place);
+}
+
+void OntologyBuilder::SetRangeOfLinks(const RdfStatement& statement, Place place,
+                                      RelationTerm* relation) {
+  const RdfNode& object = statement.object;
+  if (object.kind == NodeKind::kIri && IsOfValues(object.value))
+    FailOnKindOfRange(*relation, object, place);
+  if (object.kind == NodeKind::kBlank || IsForeign(object, place)) {
+    if (object.kind == NodeKind::kBlank) UnionOf(statement, place);  // which is then no other's
+    relation->range = "Thing";
+    return PassOver("ranges beyond a concept (any is taken)", place);
+  }
+  relation->range = RequireConcept(object, place);
+}
+
+void OntologyBuilder::SetRangeOfValues(const RdfStatement& statement, Place place,
+                                       RelationTerm* relation) {
+  const RdfNode& object = statement.object;
+  if (object.kind == NodeKind::kIri && names_.count(object.value) > 0)
+    FailOnKindOfRange(*relation, object, place);
+  relation->range = Readable(object);
+  if (IsValueType(object.value)) return;
+  relation->is_dropped = true;
+  PassOver(object.kind == NodeKind::kBlank
+               ? "relations to values of a type without a name"
+               : fmt::format("relations to values of {}", Readable(object)),
+           place);
 }
 
 OntologyBuilder::RelationTerm& OntologyBuilder::RequireRelation(const RdfNode& subject,
@@ -335,32 +475,37 @@ std::string OntologyBuilder::RequireConcept(const RdfNode& node, Place place) co
                   "; a concept is declared as owl:Class");
 }
 
-/// The concepts of `[ a owl:Class ; owl:unionOf ( A B ) ]`.
-std::vector<std::string> OntologyBuilder::UnionOf(const RdfStatement& statement, Place place) {
+/// The concepts of `[ a owl:Class ; owl:unionOf ( A B ) ]`, where it is one of names.
+std::optional<std::vector<std::string>> OntologyBuilder::UnionOf(const RdfStatement& statement,
+                                                                 Place place) {
   const std::string& node = statement.object.value;
   const RdfNode* type = ObjectOf(place, node, kRdf + "type");
   const RdfNode* list = ObjectOf(place, node, kOwl + "unionOf");
   const bool is_union = type != nullptr && type->value == kOwl + "Class" && list != nullptr &&
                         blanks_.at({place.document, node}).size() == 2;
-  if (!is_union) FailOnSubset(statement, place);
   used_blanks_.insert({place.document, node});
+  if (!is_union) return std::nullopt;
   return Members(*list, place);
 }
 
-std::vector<std::string> OntologyBuilder::Members(RdfNode list, Place place) {
+std::optional<std::vector<std::string>> OntologyBuilder::Members(RdfNode list, Place place) {
   std::vector<std::string> members;
+  bool is_named = true;
   // Each node once: a list that bites its own tail has no end.
   while (list.kind == NodeKind::kBlank &&
          used_blanks_.insert({place.document, list.value}).second) {
     const RdfNode* first = ObjectOf(place, list.value, kRdf + "first");
     const RdfNode* rest = ObjectOf(place, list.value, kRdf + "rest");
     if (first == nullptr || rest == nullptr) break;
-    members.push_back(RequireConcept(*first, place));
+    const bool is_concept = first->kind == NodeKind::kIri && !IsForeign(*first, place);
+    members.push_back(is_concept ? RequireConcept(*first, place) : "");
+    is_named = is_named && is_concept;
     list = *rest;
   }
   if (list.value != kRdf + "nil" || members.empty()) {
     Fail(place, "owl:unionOf has no list of concepts, wanted ( A B ... )");
   }
+  if (!is_named) return std::nullopt;
   return members;
 }
 
@@ -384,26 +529,32 @@ void OntologyBuilder::CheckBlanks() {
     if (type != nullptr && IsOfOwl(type->value)) {
       PassOver(Readable(type->value), place);
     } else if (!is_list) {
-      FailOnSubset(*statements.front(), place);
+      PassOver("nodes without a name", place);
     }
   }
 }
 
-void OntologyBuilder::CheckRelations() const {
-  for (const auto& [name, relation] : relations_) {
-    if (!relation.is_link) {
-      Fail(relation.place,
-           fmt::format("relation {} is an owl:FunctionalProperty alone; say also whether it is an "
-                       "owl:ObjectProperty or an owl:DatatypeProperty",
-                       relation.qualified));
-    }
-    if (!relation.range) {
-      Fail(relation.place,
-           fmt::format("relation {} has no rdfs:range, wanted {}", relation.qualified,
-                       *relation.is_link ? "the concept of what it leads to"
-                                         : "the type of its values, xsd:float"));
-    }
+void OntologyBuilder::CheckRelations() {
+  for (auto relation = relations_.begin(); relation != relations_.end();) {
+    relation = IsWhole(&relation->second) ? std::next(relation) : relations_.erase(relation);
   }
+}
+
+/// Gives a relation what it may be without; whether it says enough to be read.
+bool OntologyBuilder::IsWhole(RelationTerm* relation) {
+  if (relation->is_dropped) return false;
+  if (!relation->is_link) {
+    PassOver("relations that are an owl:FunctionalProperty alone", relation->place);
+    return false;
+  }
+  if (relation->range) return true;
+  if (!*relation->is_link) {
+    PassOver("relations to values without rdfs:range", relation->place);
+    return false;
+  }
+  PassOver("no rdfs:range (any concept is taken)", relation->place);
+  relation->range = "Thing";
+  return true;
 }
 
 // The ontology ------------------------------------------------------------------------------------

@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "hires/base/faults.h"
 #include "hires/knowledge/ontology.h"
 #include "knowledge/ontology/ontology_rdf.h"
 
@@ -43,6 +44,7 @@ class OntologyBuilder {
     bool functional{false};
     std::optional<std::vector<std::string>> domain;
     std::optional<std::string> range;
+    bool is_dropped{false};  // its values are of no type that is read
   };
   /// What of a document is beyond what is read of OWL, and says nothing of how names are used.
   struct PassedOver {
@@ -52,14 +54,19 @@ class OntologyBuilder {
   using BlankId = std::pair<const RdfDocument*, std::string>;
 
   void Declare(const RdfDocument& document);
-  void AddPrefixes(const RdfDocument& document);
+  void AddPrefixes();
+  void InventPrefixes();
   void DeclareOne(const RdfStatement& statement, Place place);
   void DeclareIndividuals();
+  void DescribeAll();
+  bool IsForeign(const RdfNode& node, Place place) const;
+  bool ImportsMore(const RdfDocument& document) const;
   void PassOver(const std::string& kind, Place place);
   void WarnOfPassedOver() const;
   void DeclareConcept(const std::string& iri, Place place);
   void DeclareRelation(const std::string& iri, const std::string& type, Place place);
   static void SetIsLink(RelationTerm* relation, bool is_link, Place place);
+  bool CanBeNamed(const std::string& iri, Place place);
   Term NewTerm(const std::string& iri, Place place) const;
   std::string QualifiedName(const std::string& iri, Place place) const;
 
@@ -69,13 +76,16 @@ class OntologyBuilder {
   void AddSuperclass(const RdfStatement& statement, Place place);
   void SetDomain(const RdfStatement& statement, Place place);
   void SetRange(const RdfStatement& statement, Place place);
+  void SetRangeOfLinks(const RdfStatement& statement, Place place, RelationTerm* relation);
+  void SetRangeOfValues(const RdfStatement& statement, Place place, RelationTerm* relation);
   RelationTerm& RequireRelation(const RdfNode& node, Place place);
   std::string RequireConcept(const RdfNode& node, Place place) const;
-  std::vector<std::string> UnionOf(const RdfStatement& statement, Place place);
-  std::vector<std::string> Members(RdfNode list, Place place);
+  std::optional<std::vector<std::string>> UnionOf(const RdfStatement& statement, Place place);
+  std::optional<std::vector<std::string>> Members(RdfNode list, Place place);
   const RdfNode* ObjectOf(Place place, const std::string& blank,
                           const std::string& predicate) const;
-  void CheckRelations() const;
+  void CheckRelations();
+  bool IsWhole(RelationTerm* relation);
   void CheckBlanks();
 
   void NumberConcepts(Ontology* ontology) const;
@@ -93,6 +103,7 @@ class OntologyBuilder {
   [[noreturn]] void FailOnCycle(const std::map<std::string, std::size_t>& open) const;
 
   std::vector<RdfDocument> documents_;
+  base::Faults faults_;
   std::map<std::string, std::string> prefixes_;  // of all documents
   std::map<std::string, ConceptTerm> concepts_;  // by name
   std::map<std::string, RelationTerm> relations_;
@@ -100,6 +111,9 @@ class OntologyBuilder {
   std::set<std::string> headers_;                             // IRIs of owl:Ontology
   std::set<std::string> annotations_;                         // IRIs of owl:AnnotationProperty
   std::set<std::string> individuals_;                         // their IRIs
+  std::set<std::string> others_;                              // IRIs of what is passed over
+  std::set<std::string> own_namespaces_;                      // of what is declared
+  std::set<const RdfDocument*> importing_;                    // what is not given
   std::vector<std::pair<const RdfStatement*, Place>> typed_;  // by a class that is not OWL's
   std::map<const RdfDocument*, PassedOver> passed_over_;
   std::map<BlankId, std::vector<const RdfStatement*>> blanks_;  // what is said about them

@@ -5,8 +5,10 @@
 
 #include <algorithm>
 #include <cctype>
+#include <map>
 #include <memory>
 #include <mutex>
+#include <optional>
 
 #include "hires/base/error.h"
 #include "hires/base/text.h"
@@ -21,8 +23,12 @@ constexpr std::size_t kMaxIri = 200;
 constexpr std::size_t kMaxString = 64u << 10;
 constexpr std::size_t kMaxStatements = 200'000;
 constexpr const char* kBase = "urn:x-hires:base";
+constexpr const char* kNul = "there is a NUL byte, wanted text; is this an ontology in Turtle?";
 
-[[noreturn]] void FailInTurtle(const std::string& source, int line, const std::string& what) {
+/// How the text is written.
+enum class Notation { kTurtle, kRdfXml };
+
+[[noreturn]] void FailInText(const std::string& source, int line, const std::string& what) {
   throw base::ConfigError(fmt::format("{}: {}; line {}", source, what, line));
 }
 
@@ -67,15 +73,14 @@ class TurtleScan {
 
   void Open() {
     if (++depth_ <= kMaxDepth) return;
-    FailInTurtle(source_, line_,
-                 fmt::format("brackets are nested more than {} deep; give the inner nodes names",
-                             kMaxDepth));
+    FailInText(source_, line_,
+               fmt::format("brackets are nested more than {} deep; give the inner nodes names",
+                           kMaxDepth));
   }
 
   void Advance() {
     const char c = text_[at_++];
-    if (c == '\0')
-      FailInTurtle(source_, line_, "there is a NUL byte, wanted text; is this a Turtle file?");
+    if (c == '\0') FailInText(source_, line_, kNul);
     if (c == '\n') ++line_;
   }
 
@@ -97,7 +102,7 @@ class TurtleScan {
 
   void CountBase() {
     if (++num_bases_ > kMaxBases) {
-      FailInTurtle(source_, line_, fmt::format("more than {} bases; write whole IRIs", kMaxBases));
+      FailInText(source_, line_, fmt::format("more than {} bases; write whole IRIs", kMaxBases));
     }
   }
 
@@ -124,7 +129,7 @@ class TurtleScan {
 
   void CheckLength(const char* what, std::size_t length, std::size_t at_most) const {
     if (length <= at_most) return;
-    FailInTurtle(
+    FailInText(
         source_, line_,
         fmt::format("{} is {} bytes long, at most {} are read; shorten it", what, length, at_most));
   }
@@ -137,6 +142,113 @@ class TurtleScan {
   int line_{1};
   std::vector<int> prefix_lines_;
 };
+
+/// Walks over a text in XML before raptor sees it, which has no limit of depth.
+class XmlScan {
+ public:
+  XmlScan(std::string_view text, const std::string& source) : text_(text), source_(source) {
+    if (text_.find('\0') != std::string_view::npos) FailInText(source_, 1, kNul);
+    for (at_ = text_.find('<'); at_ < text_.size(); at_ = text_.find('<', at_)) Step();
+  }
+
+  const std::string& root() const { return root_; }  ///< "rdf:RDF"
+
+ private:
+  void Step() {
+    if (Starts("<!--")) return SkipTo("-->");
+    if (Starts("<![CDATA[")) return SkipTo("]]>");
+    if (Starts("<?")) return SkipTo("?>");
+    if (Starts("<!DOCTYPE")) return SkipDocumentType();
+    const bool closes = Starts("</");
+    const std::size_t begin = at_;
+    const std::size_t end = std::min(EndOfTag(), text_.size());
+    at_ = end;
+    if (closes) {
+      --depth_;
+    } else if (end > begin + 1 && text_[end - 1] != '/') {
+      Open(begin);
+    }
+    if (root_.empty() && !closes)
+      root_ = text_.substr(begin + 1, text_.find_first_of(" \t\r\n/>", begin) - begin - 1);
+  }
+
+  void Open(std::size_t begin) {
+    if (++depth_ <= kMaxDepth) return;
+    const auto line = 1 + std::count(text_.begin(), text_.begin() + std::ptrdiff_t(begin), '\n');
+    FailInText(
+        source_, static_cast<int>(line),
+        fmt::format("elements are nested more than {} deep; give the inner ones names", kMaxDepth));
+  }
+
+  bool Starts(std::string_view with) const { return text_.substr(at_, with.size()) == with; }
+
+  void SkipTo(std::string_view end) {
+    const std::size_t found = text_.find(end, at_);
+    at_ = found == std::string_view::npos ? text_.size() : found + end.size();
+  }
+
+  /// With its declarations of entities, which stand in brackets.
+  void SkipDocumentType() {
+    const std::size_t end = text_.find_first_of("[>", at_);
+    SkipTo(end < text_.size() && text_[end] == '[' ? "]" : ">");
+  }
+
+  /// Where its '>' stands, which may also stand in an attribute.
+  std::size_t EndOfTag() const {
+    char quote = '\0';
+    for (std::size_t at = at_; at < text_.size(); ++at) {
+      const char c = text_[at];
+      if (quote != '\0') {
+        if (c == quote) quote = '\0';
+      } else if (c == '"' || c == '\'') {
+        quote = c;
+      } else if (c == '>') {
+        return at;
+      }
+    }
+    return std::string_view::npos;
+  }
+
+  std::string_view text_;
+  const std::string& source_;
+  std::size_t at_{0};
+  int depth_{0};
+  std::string root_;
+};
+
+[[noreturn]] void FailOnNotation(const std::string& source, const std::string& what) {
+  FailInText(
+      source, 1,
+      fmt::format("is {}, wanted Turtle or RDF/XML; convert it, with Protege (save as Turtle) "
+                  "or `robot convert --input FILE --output FILE.ttl`",
+                  what));
+}
+
+/// An IRI in Turtle begins as a tag in XML does, but has no blanks.
+bool IsXml(std::string_view text) {
+  const auto starts = [&](std::string_view with) { return text.substr(0, with.size()) == with; };
+  if (starts("<?xml") || starts("<!")) return true;
+  if (!starts("<")) return false;
+  const std::string_view tag = text.substr(0, text.find('>'));
+  return tag.find_first_of(" \t\r\n") != std::string_view::npos || tag == "<rdf:RDF";
+}
+
+/// @throws ConfigError for the other notations that ontologies are published in.
+Notation NotationOf(std::string_view text, const std::string& source) {
+  const std::size_t begin = text.find_first_not_of(" \t\r\n");
+  if (begin == std::string_view::npos) return Notation::kTurtle;
+  text.remove_prefix(begin);
+  const auto starts = [&](std::string_view with) { return text.substr(0, with.size()) == with; };
+  if (starts("Prefix(") || starts("Ontology(")) FailOnNotation(source, "OWL in functional syntax");
+  if (starts("Prefix:") || starts("Ontology:")) FailOnNotation(source, "OWL in Manchester syntax");
+  if (starts("{")) FailOnNotation(source, "JSON");
+  if (!IsXml(text)) return Notation::kTurtle;
+  const std::string root = XmlScan(text, source).root();
+  const std::string name = root.substr(root.find(':') + 1);  // find() + 1 is 0 without a prefix
+  if (name == "Ontology") FailOnNotation(source, "OWL/XML");
+  if (name != "RDF") FailOnNotation(source, fmt::format("XML whose root is <{}>", root));
+  return Notation::kRdfXml;
+}
 
 struct RaptorDeleter {
   void operator()(raptor_world* world) const { raptor_free_world(world); }
@@ -167,13 +279,17 @@ RdfNode ToNode(const raptor_term& term) {
 /// error is kept and told afterwards.
 struct Parse {
   RdfDocument* document;
-  const TurtleScan* scan;
+  Notation notation;
+  const TurtleScan* scan;       // null for XML
   std::size_t num_prefixes{0};  // seen up to now
   raptor_parser* parser{nullptr};
   std::string error{};
   int error_line{0};
+  int skipped_lines{0};  // before the XML begins
 
-  int Line() const { return raptor_locator_line(raptor_parser_get_locator(parser)); }
+  int Line() const {
+    return skipped_lines + raptor_locator_line(raptor_parser_get_locator(parser));
+  }
   void Stop(const std::string& what, int line) {
     if (!error.empty()) return;
     error = what;
@@ -196,22 +312,54 @@ void OnNamespace(void* user_data, raptor_namespace* name_space) {
   auto& parse = *static_cast<Parse*>(user_data);
   const std::string prefix = Text(raptor_namespace_get_prefix(name_space));
   const std::string iri = Text(raptor_namespace_get_uri(name_space));
-  const int line = parse.scan->PrefixLine(parse.num_prefixes++);
   const auto [known, is_new] = parse.document->prefixes.emplace(prefix, iri);
+  if (parse.scan == nullptr) return;  // in XML a prefix holds for an element alone
+  const int line = parse.scan->PrefixLine(parse.num_prefixes++);
   if (is_new || known->second == iri) return;
   parse.Stop(fmt::format("prefix '{}:' is <{}> and was <{}> before; choose another prefix", prefix,
                          iri, known->second),
              line);
 }
 
+/// 'The namespace prefix in "rdfs:label" was not declared.' of raptor, "Namespace prefix rdfs on
+/// label is not defined" of the XML parser; or nothing.
+std::string UndeclaredPrefix(const std::string& message) {
+  for (const std::string before : {"The namespace prefix in \"", "Namespace prefix "}) {
+    const std::size_t begin = message.find(before);
+    if (begin == std::string::npos) continue;
+    const std::string rest = message.substr(begin + before.size());
+    return rest.substr(0, rest.find_first_of(": \""));
+  }
+  return "";
+}
+
+std::string InOurWords(const std::string& message, Notation notation) {
+  const std::string prefix = UndeclaredPrefix(message);
+  const bool is_turtle = notation == Notation::kTurtle;
+  if (prefix.empty())
+    return fmt::format("this is no {}: {}", is_turtle ? "Turtle" : "RDF/XML", message);
+  static const std::map<std::string, std::string> kKnown{
+      {"rdf", "http://www.w3.org/1999/02/22-rdf-syntax-ns#"},
+      {"rdfs", "http://www.w3.org/2000/01/rdf-schema#"},
+      {"owl", "http://www.w3.org/2002/07/owl#"},
+      {"xsd", "http://www.w3.org/2001/XMLSchema#"}};
+  const auto known = kKnown.find(prefix);
+  const std::string iri = known == kKnown.end() ? "..." : known->second;
+  return fmt::format("prefix '{}:' is not declared; add {}", prefix,
+                     is_turtle ? fmt::format("@prefix {}: <{}> .", prefix, iri)
+                               : fmt::format("xmlns:{}=\"{}\" to the root", prefix, iri));
+}
+
 void OnLog(void* user_data, raptor_log_message* message) {
   if (message->level < RAPTOR_LOG_LEVEL_ERROR) return;
   auto& parse = *static_cast<Parse*>(user_data);
-  const int line = message->locator == nullptr ? -1 : raptor_locator_line(message->locator);
+  const int line = message->locator == nullptr
+                       ? -1
+                       : parse.skipped_lines + raptor_locator_line(message->locator);
   // Some messages come without a line; the next one, about the same, has it. Parsing is not
   // aborted: it ends by itself.
   if (parse.error_line < 1) parse.error_line = line;
-  if (parse.error.empty()) parse.error = fmt::format("this is no Turtle: {}", message->text);
+  if (parse.error.empty()) parse.error = InOurWords(message->text, parse.notation);
 }
 
 /// The curl library and its process-wide set-up are left alone: nothing is fetched.
@@ -228,20 +376,24 @@ void RunRaptor(std::string_view text, Parse* parse) {
   const std::lock_guard<std::mutex> lock(mutex);
   const RaptorPointer<raptor_world> world = NewWorld();
   raptor_world_set_log_handler(world.get(), parse, OnLog);
-  const RaptorPointer<raptor_parser> parser(raptor_new_parser(world.get(), "turtle"));
+  const bool is_turtle = parse->notation == Notation::kTurtle;
+  const RaptorPointer<raptor_parser> parser(
+      raptor_new_parser(world.get(), is_turtle ? "turtle" : "rdfxml"));
   const RaptorPointer<raptor_uri> base(
       raptor_new_uri(world.get(), reinterpret_cast<const unsigned char*>(kBase)));
-  if (!parser || !base) throw base::ConfigError("raptor has no parser of Turtle");
+  if (!parser || !base) throw base::ConfigError("raptor has no parser of Turtle or RDF/XML");
   parse->parser = parser.get();
   raptor_parser_set_option(parser.get(), RAPTOR_OPTION_NO_NET, nullptr, 1);
   raptor_parser_set_option(parser.get(), RAPTOR_OPTION_NO_FILE, nullptr, 1);
+  raptor_parser_set_option(parser.get(), RAPTOR_OPTION_LOAD_EXTERNAL_ENTITIES, nullptr, 0);
+  raptor_parser_set_option(parser.get(), RAPTOR_OPTION_CHECK_RDF_ID, nullptr, 0);
   raptor_parser_set_statement_handler(parser.get(), parse, OnStatement);
   raptor_parser_set_namespace_handler(parser.get(), parse, OnNamespace);
   const bool failed =
       raptor_parser_parse_start(parser.get(), base.get()) != 0 ||
       raptor_parser_parse_chunk(parser.get(), reinterpret_cast<const unsigned char*>(text.data()),
                                 text.size(), 1) != 0;
-  if (failed) parse->Stop("this is no Turtle", parse->Line());
+  if (failed) parse->Stop(is_turtle ? "this is no Turtle" : "this is no RDF/XML", parse->Line());
   if (parse->error_line < 1) parse->error_line = std::max(parse->Line(), 1);
 }
 
@@ -249,15 +401,25 @@ void RunRaptor(std::string_view text, Parse* parse) {
 
 RdfDocument ReadRdf(std::string_view text, const std::string& source) {
   if (text.size() > kMaxRdfBytes) {
-    throw base::ConfigError(fmt::format("{}: {} bytes of Turtle, at most {} are read", source,
-                                        text.size(), kMaxRdfBytes));
+    throw base::ConfigError(fmt::format("{}: is an ontology of {} bytes, at most {} are read",
+                                        source, text.size(), kMaxRdfBytes));
   }
-  const TurtleScan scan(text, source);
+  constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
+  if (text.substr(0, kByteOrderMark.size()) == kByteOrderMark)
+    text.remove_prefix(kByteOrderMark.size());
   RdfDocument document;
   document.source = source;
-  Parse parse{&document, &scan};
+  Parse parse{&document, NotationOf(text, source), nullptr};
+  std::optional<TurtleScan> scan;
+  if (parse.notation == Notation::kTurtle) {
+    parse.scan = &scan.emplace(text, source);
+  } else {  // nothing may stand before an XML declaration
+    const std::string_view blanks = text.substr(0, text.find('<'));
+    parse.skipped_lines = static_cast<int>(std::count(blanks.begin(), blanks.end(), '\n'));
+    text.remove_prefix(blanks.size());
+  }
   RunRaptor(text, &parse);
-  if (!parse.error.empty()) FailInTurtle(source, parse.error_line, parse.error);
+  if (!parse.error.empty()) FailInText(source, parse.error_line, parse.error);
   return document;
 }
 

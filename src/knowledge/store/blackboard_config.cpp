@@ -46,7 +46,7 @@ BlackboardConfig ReadBlackboardConfig(const std::string& path) {
   base::ParamReader in = base::ParamReader::FromFile(path);
   BlackboardConfig config;
   config.ontology = PathsFrom(path, in.GetStrings("ontology"));
-  if (config.ontology.empty()) in.Fail("ontology", "wanted paths of Turtle files");
+  if (config.ontology.empty()) in.Fail("ontology", "wanted paths of Turtle or RDF/XML files");
   config.store = ExpandHome(in.GetString("store"));
   if (config.store.empty()) in.Fail("store", "wanted a path, or :memory:");
   config.options = ReadOptions(&in);

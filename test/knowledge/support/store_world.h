@@ -14,7 +14,7 @@ namespace hires::test_support {
 /// A few concepts and relations, enough for the tests of the store.
 inline std::shared_ptr<const knowledge::Ontology> SmallOntology() {
   static const auto ontology =
-      std::make_shared<const knowledge::Ontology>(knowledge::Ontology::FromTurtle(R"(
+      std::make_shared<const knowledge::Ontology>(knowledge::Ontology::FromText(R"(
 @prefix owl: <http://www.w3.org/2002/07/owl#> .
 @prefix rdfs: <http://www.w3.org/2000/01/rdf-schema#> .
 @prefix xsd: <http://www.w3.org/2001/XMLSchema#> .
@@ -42,7 +42,7 @@ t:hasCount a owl:DatatypeProperty ; rdfs:domain t:Object ; rdfs:range xsd:int .
 t:isClean a owl:DatatypeProperty ; rdfs:domain t:Object ; rdfs:range xsd:boolean .
 t:hasResult a owl:DatatypeProperty ; rdfs:domain t:ExecutionRecord ; rdfs:range xsd:string .
 )",
-                                                                                  "small.ttl"));
+                                                                                "small.ttl"));
   return ontology;
 }
 

@@ -13,7 +13,7 @@ namespace hires_ros {
 /// Which files symbols and geometry are about; config/translator.yaml.
 struct TranslatorParams {
   std::string scene;                  ///< scene.yaml: names world, robot and objects
-  std::vector<std::string> ontology;  ///< Turtle files
+  std::vector<std::string> ontology;  ///< Turtle or RDF/XML files
   std::string world, robot, objects;  ///< instead of the scene's where not empty
   hires::control::RobotNames names;
 };
