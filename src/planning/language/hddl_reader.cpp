@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "hires/base/check.h"
+#include "hires/base/faults.h"
 #include "hires/base/text.h"
 #include "hires/planning/datum_reader.h"
 #include "hires/planning/domain.h"
