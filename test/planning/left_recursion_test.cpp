@@ -89,19 +89,53 @@ std::string DownFirst() {
          text.substr(drive);
 }
 
-// The whole search goes down the left recursion and never comes back.
+// A search that is not bounded goes down the left recursion and never comes back.
 TEST(LeftRecursionTest, TheCheapestAndAllPlansHaveAtLeastWhatIsFoundWithoutIt) {
   const std::string domain = DownFirst();
   for (const Which which : {Which::kFirst, Which::kBest, Which::kAll}) {
     const Solved solved = Solve(domain.c_str(), kFromOneToFour, which);
-    ASSERT_EQ(solved.result.plans.size(), 1u);
+    // All: with rounds for nothing, of which there is no end.
+    ASSERT_EQ(solved.result.plans.size(), which == Which::kAll ? 1000u : 1u);
     EXPECT_EQ(ToShop2Plan(solved.result.plans[0]),
               "(!drive p1 p2)\n(!drive p2 p3)\n(!drive p3 p4)\n");
     EXPECT_THAT(solved.violations, testing::IsEmpty());
     EXPECT_FALSE(solved.result.exhausted) << "there may be others";
     EXPECT_EQ(solved.result.outcome,
-              which == Which::kFirst ? PlanOutcome::kFound : PlanOutcome::kLimitTime);
+              which == Which::kBest ? PlanOutcome::kLimitTime : PlanOutcome::kFound);
   }
+}
+
+/// Three beads on a string, written with the recursion first: it has to be gone down three times.
+TEST(LeftRecursionTest, IsGoneDownAsFarAsItTakes) {
+  const Solved solved = Solve(R"((define (domain beads)
+      (:types bead) (:predicates (after ?a ?b - bead) (on ?b - bead)) (:task thread :parameters ())
+      (:method more :parameters (?b - bead) :task (thread)
+        :ordered-subtasks (and (thread) (add ?b)))
+      (:method enough :parameters () :task (thread) :ordered-subtasks ())
+      (:action add :parameters (?b - bead)
+        :precondition (exists (?a - bead) (and (on ?a) (after ?a ?b))) :effect (on ?b))))",
+                              R"((define (problem three) (:domain beads)
+      (:objects a b c d - bead) (:htn :ordered-subtasks (and (thread)))
+      (:init (on a) (after a b) (after b c) (after c d)) (:goal (and (on b) (on c) (on d)))))");
+  ASSERT_EQ(solved.result.outcome, PlanOutcome::kFound);
+  EXPECT_THAT(solved.violations, testing::IsEmpty());
+  EXPECT_LT(solved.result.progress.expansions, 10'000u);
+}
+
+/// Back and forth until the door is open: the same task comes up below itself in a state that was.
+TEST(LeftRecursionTest, ATaskBelowItselfInAStateThatWasIsLeftOutToo) {
+  const Solved solved = Solve(R"((define (domain door)
+      (:predicates (near) (open)) (:task enter :parameters ())
+      (:method again :parameters () :task (enter) :ordered-subtasks (and (go) (leave) (enter)))
+      (:method in :parameters () :task (enter) :ordered-subtasks (and (go) (push)))
+      (:action go :parameters () :precondition (not (near)) :effect (near))
+      (:action leave :parameters () :precondition (near) :effect (not (near)))
+      (:action push :parameters () :precondition (near) :effect (open))))",
+                              "(define (problem p) (:domain door) (:htn :ordered-subtasks (and "
+                              "(enter))) (:init) (:goal (open)))");
+  ASSERT_EQ(solved.result.outcome, PlanOutcome::kFound);
+  EXPECT_EQ(ToShop2Plan(solved.result.plans[0]), "(!go)\n(!push)\n");
+  EXPECT_LT(solved.result.progress.expansions, 20u);
 }
 
 TEST(LeftRecursionTest, NoPlanIsFoundTwice) {

@@ -73,16 +73,36 @@ TEST_F(SearchPathTest, WasHereKnowsTheSameStateAndTasks) {
   EXPECT_FALSE(path_.WasHere());
 }
 
-TEST_F(SearchPathTest, LeftRecursionIsTheSameTaskBelowItselfWithoutAStepBetween) {
+TEST_F(SearchPathTest, RepeatsAreAncestorsOfTheSameTaskInTheSameState) {
+  path_.CountRepeats();
   Decompose(Network::kRoot, {bench_.Term("(t)"), bench_.Term("(!a)")});  // two, as the method has
   const std::uint32_t above = path_.network().FirstReady();
-  EXPECT_FALSE(path_.IsLeftRecursion(above, bench_.Term("(t)")));
+  EXPECT_EQ(path_.NumRepeats(above, bench_.Term("(t)")), 0);
   Decompose(above, {bench_.Term("(!a)"), bench_.Term("(t)")});
   const std::uint32_t step = path_.network().FirstReady();
-  EXPECT_TRUE(path_.IsLeftRecursion(step, bench_.Term("(t)")));
-  EXPECT_FALSE(path_.IsLeftRecursion(step, bench_.Term("(u)")));
+  EXPECT_EQ(path_.NumRepeats(step, bench_.Term("(t)")), 1);
+  EXPECT_EQ(path_.NumRepeats(step, bench_.Term("(u)")), 0);
+  path_.state().Add(bench_.Term("(p)"));
+  EXPECT_EQ(path_.NumRepeats(step, bench_.Term("(t)")), 0);
+  path_.state().Remove(bench_.Term("(p)"));  // as it was, whatever happened in between
   path_.Finish({step, &bench_.Operator("!a"), 0, 0.0});
-  EXPECT_FALSE(path_.IsLeftRecursion(path_.network().FirstReady(), bench_.Term("(t)")));
+  Decompose(path_.network().FirstReady(), {bench_.Term("(t)"), bench_.Term("(!a)")});
+  EXPECT_EQ(path_.NumRepeats(path_.network().FirstReady(), bench_.Term("(t)")), 2);
+}
+
+TEST_F(SearchPathTest, SituationsAreEqualOnWhateverPath) {
+  const SearchPath::Moment start = path_.Now();
+  Decompose(Network::kRoot, {bench_.Term("(!a)"), bench_.Term("(t)")});
+  path_.Finish({path_.network().FirstReady(), &bench_.Operator("!a"), 0, 0.0});
+  const std::uint64_t once = path_.situation();
+  Decompose(path_.network().FirstReady(), {bench_.Term("(!a)"), bench_.Term("(t)")});
+  EXPECT_NE(path_.situation(), once);
+  path_.Finish({path_.network().FirstReady(), &bench_.Operator("!a"), 0, 0.0});
+  EXPECT_EQ(path_.situation(), once) << "(t) is left, from other nodes";
+  path_.state().Add(bench_.Term("(p)"));
+  EXPECT_NE(path_.situation(), once);
+  path_.ReturnTo(start);
+  EXPECT_TRUE(path_.has_situation());
 }
 
 }  // namespace

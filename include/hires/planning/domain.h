@@ -101,6 +101,9 @@ struct Branch {
   Precondition precondition;
   TaskNetwork subtasks;
   Place place;
+  /// The precondition, and what the step needs that comes before all other subtasks, where one does
+  /// (HDDL): a search in which nothing can come in between leaves out what fails one step later.
+  std::optional<Precondition> with_first_step{};
 };
 
 struct Method {

@@ -7,6 +7,7 @@
 #include <optional>
 #include <utility>
 
+#include "hires/base/spelling.h"
 #include "hires/base/text.h"
 #include "hires/planning/datum_reader.h"
 
@@ -448,8 +449,16 @@ std::string UnknownFunctionText(const std::string& name, const Functions& functi
   std::vector<std::string> known = functions.Names();
   const std::vector<std::string> forms = FormNames();
   known.insert(known.end(), forms.begin(), forms.end());
-  return base::UnknownName("function", Excerpt(MakeSymbol(name)), known) +
-         "; C++ code adds more through Functions::Add";
+  const std::string excerpt = Excerpt(MakeSymbol(name));
+  if (!base::LikelyNames(excerpt, known).empty()) {
+    return base::UnknownName("function", excerpt, known) +
+           "; C++ code adds more through Functions::Add";
+  }
+  return fmt::format(
+      "function '{}' is unknown, and none has a name like it; functions that a JSHOP2 domain has "
+      "in "
+      "Java are not read: C++ code adds them through Functions::Add",
+      excerpt);
 }
 
 bool Callable::Takes(std::size_t count) const {

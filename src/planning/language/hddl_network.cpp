@@ -27,17 +27,19 @@ const Datum& TaskWithin(const HddlScope& scope, const Datum& datum, int index, I
   return datum.items[1];
 }
 
-void AddStaticConditions(const HddlVocabulary& vocabulary, const Datum& task,
-                         std::vector<Formula>* conditions) {
-  const auto found = vocabulary.static_conditions.find(task.items[0].text);
-  if (found == vocabulary.static_conditions.end()) return;
+/// @param atoms  of the needs: those for the action's parameters.
+/// @param task  of the action; its name may have the `!`.
+void AddNeeds(const HddlVocabulary& vocabulary, const Datum& task,
+              std::vector<Datum> HddlVocabulary::Needs::*atoms, std::vector<Formula>* conditions) {
+  const std::string& name = task.items[0].text;
+  const auto found = vocabulary.needs.find(name.substr(name.front() == '!' ? 1 : 0));
+  if (found == vocabulary.needs.end()) return;
+  const HddlVocabulary::Needs& needs = found->second;
   std::map<std::string, Datum> values;
-  for (std::size_t i = 0; i < found->second.parameters.size(); ++i) {
-    values[found->second.parameters[i]] = task.items[i + 1];
+  for (std::size_t i = 0; i < needs.parameters.size(); ++i) {
+    values[needs.parameters[i]] = task.items[i + 1];
   }
-  for (const Datum& atom : found->second.atoms) {
-    conditions->push_back(MakeAtom(Substitute(atom, values)));
-  }
+  for (const Datum& atom : needs.*atoms) conditions->push_back(MakeAtom(Substitute(atom, values)));
 }
 
 void ReadTasks(const Datum& datum, HddlScope* scope, HddlNetwork* result, Ids* ids) {
@@ -50,7 +52,7 @@ void ReadTasks(const Datum& datum, HddlScope* scope, HddlNetwork* result, Ids* i
         CheckTerm(scope->spot, item.task, "task", scope->vocabulary->tasks, scope->variables,
                   scope->vocabulary);
     if (signature.kind == "action") {
-      AddStaticConditions(*scope->vocabulary, item.task, &result->conditions);
+      AddNeeds(*scope->vocabulary, item.task, &HddlVocabulary::Needs::fixed, &result->conditions);
       item.task.items[0].text = "!" + signature.name;
     }
     result->network.items.push_back(std::move(item));
@@ -101,6 +103,18 @@ int FindCircle(const TaskNetwork& network) {
   }
   const auto left = std::find_if(num_before.begin(), num_before.end(), [](int n) { return n > 0; });
   return left == num_before.end() ? -1 : static_cast<int>(left - num_before.begin());
+}
+
+/// The task that comes before all others, or -1: there are several that nothing comes before. What
+/// something comes before comes after the only one that nothing does, as the order has no circle.
+int FirstOfAll(const TaskNetwork& network) {
+  std::vector<bool> has_before(network.items.size());
+  for (const auto& [before, after] : network.order) has_before[after] = true;
+  const auto first = std::find(has_before.begin(), has_before.end(), false);
+  if (first == has_before.end() ||
+      std::find(first + 1, has_before.end(), false) != has_before.end())
+    return -1;
+  return static_cast<int>(first - has_before.begin());
 }
 
 void ReadOrdering(const Datum& datum, const HddlScope& scope, const Ids& ids,
@@ -161,6 +175,11 @@ HddlNetwork ReadNetwork(const HddlFields& fields, HddlScope* scope) {
   }
   if (const Datum* ordering = fields.FindOneOf(kOrderingNames)) {
     ReadOrdering(*ordering, *scope, ids, &result.network);
+  }
+  const int first = FirstOfAll(result.network);
+  if (first >= 0) {
+    AddNeeds(*scope->vocabulary, result.network.items[first].task, &HddlVocabulary::Needs::changing,
+             &result.needs_of_first);
   }
   return result;
 }

@@ -12,6 +12,8 @@ namespace hires::planning::hddl {
 struct HddlNetwork {
   TaskNetwork network;
   std::vector<Formula> conditions;  ///< :constraints, and what its actions need and nothing changes
+  /// What else the action needs that comes before all other subtasks, where one does.
+  std::vector<Formula> needs_of_first{};
 };
 
 /// Names of the fields that ReadNetwork reads.

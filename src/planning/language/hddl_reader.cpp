@@ -118,7 +118,7 @@ class DomainReader {
     for (const Datum* form : AllOf(sections, ":action")) {
       faults.Collect([&] { ReadAction(*form); });
     }
-    CollectStaticConditions();
+    CollectNeeds();
     for (const Datum* form : AllOf(sections, ":method")) {
       faults.Collect([&] { ReadMethod(*form); });
     }
@@ -204,19 +204,20 @@ class DomainReader {
     goals.insert(goals.end(), effects.value_atoms.begin(), effects.value_atoms.end());
   }
 
-  void CollectStaticConditions() {
+  void CollectNeeds() {
     const PredicateSet changed = ChangingPredicates(domain_);
     for (const Operator& op : domain_.operators) {
-      HddlVocabulary::StaticCondition condition;
+      HddlVocabulary::Needs needs;
       for (std::size_t i = 1; i < op.head.items.size(); ++i) {
-        condition.parameters.push_back(op.head.items[i].text);
+        needs.parameters.push_back(op.head.items[i].text);
       }
       for (const Formula& goal : op.precondition.condition.parts) {
         const std::string predicate(goal.term.Head());
-        if (goal.kind != Formula::Kind::kAtom || changed.MayHave(predicate)) continue;
-        if (vocabulary_.predicates.count(predicate) > 0) condition.atoms.push_back(goal.term);
+        if (goal.kind != Formula::Kind::kAtom || vocabulary_.predicates.count(predicate) == 0)
+          continue;
+        (changed.MayHave(predicate) ? needs.changing : needs.fixed).push_back(goal.term);
       }
-      vocabulary_.static_conditions[op.head.items[0].text.substr(1)] = std::move(condition);
+      vocabulary_.needs[op.head.items[0].text.substr(1)] = std::move(needs);
     }
   }
 
@@ -236,9 +237,14 @@ class DomainReader {
     HddlNetwork network = ReadNetwork(fields, &scope);
     Branch branch;
     branch.place = form.place;
-    branch.precondition.condition =
-        ArrangeConjunction(ReadConditions(fields, network, &scope), parameters.type_atoms,
-                           FreeVariables(MakeAtom(method.head)));
+    const std::set<std::string> bound = FreeVariables(MakeAtom(method.head));
+    std::vector<Formula> conditions = ReadConditions(fields, network, &scope);
+    branch.precondition.condition = ArrangeConjunction(conditions, parameters.type_atoms, bound);
+    if (!network.needs_of_first.empty()) {
+      AddUnlessKnown(network.needs_of_first, &conditions);
+      branch.with_first_step =
+          Precondition{{}, {}, {}, ArrangeConjunction(conditions, parameters.type_atoms, bound)};
+    }
     branch.subtasks = std::move(network.network);
     method.branches.push_back(std::move(branch));
     domain_.methods.push_back(std::move(method));
@@ -262,15 +268,19 @@ class DomainReader {
     if (const Datum* condition = fields.Find(":precondition")) {
       AppendConjuncts(ReadCondition(*condition, scope), &conditions);
     }
-    for (const Formula& extra : network.conditions) {
+    AddUnlessKnown(network.conditions, &conditions);
+    return conditions;
+  }
+
+  static void AddUnlessKnown(const std::vector<Formula>& extras, std::vector<Formula>* conditions) {
+    for (const Formula& extra : extras) {
       const bool known =
-          std::any_of(conditions.begin(), conditions.end(), [&extra](const Formula& condition) {
+          std::any_of(conditions->begin(), conditions->end(), [&extra](const Formula& condition) {
             return extra.kind == Formula::Kind::kAtom && condition.kind == extra.kind &&
                    condition.term == extra.term;
           });
-      if (!known) conditions.push_back(extra);
+      if (!known) conditions->push_back(extra);
     }
-    return conditions;
   }
 
   /// A task without a method can never be done. The search has to know that it is a task.

@@ -26,10 +26,10 @@ struct HddlVocabulary {
     std::string name;
     std::vector<int> types;  ///< of the arguments
   };
-  /// What must hold before an action and no action can change.
-  struct StaticCondition {
+  /// The atoms that must hold before an action: those that no action can change, and the others.
+  struct Needs {
     std::vector<std::string> parameters;
-    std::vector<Datum> atoms;
+    std::vector<Datum> fixed, changing;
   };
   /// An object that a domain names and leaves for its problems to declare.
   struct OpenObject {
@@ -46,8 +46,8 @@ struct HddlVocabulary {
   std::vector<std::string> object_order;  ///< their names as declared
   Signatures predicates;
   Signatures functions;
-  Signatures tasks;                                          ///< compound ones and actions
-  std::map<std::string, StaticCondition> static_conditions;  ///< of actions, by name
+  Signatures tasks;                    ///< compound ones and actions
+  std::map<std::string, Needs> needs;  ///< of actions, by name
   std::vector<OpenObject> open_objects;
   bool has_costs{false};        ///< (total-cost) is declared
   bool has_all_objects{false};  ///< no object may be left open any more

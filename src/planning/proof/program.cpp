@@ -116,7 +116,10 @@ class Scope {
 class Compiler {
  public:
   Compiler(Program* program, const Functions& functions, TermTable* terms)
-      : program_(*program), functions_(functions), terms_(*terms) {}
+      : program_(*program),
+        functions_(functions),
+        terms_(*terms),
+        changing_(ChangingPredicates(program->domain_)) {}
 
   void Run() {
     source_ = program_.domain_.source;
@@ -443,6 +446,19 @@ class Compiler {
     EnsureAt(&program_.operator_of_, terms_.Symbol(source.head.Head()).index()) = &compiled;
   }
 
+  /// One branch, of atoms that no step changes.
+  bool IsFixed(const Method& method) const {
+    if (method.branches.size() != 1 || !program_.domain_.axioms.empty()) return false;
+    const Precondition& precondition = method.branches[0].precondition;
+    const std::vector<Formula>& parts = precondition.condition.parts;
+    return precondition.condition.kind == Formula::Kind::kSequence &&
+           precondition.order == Precondition::Order::kAll &&
+           std::all_of(parts.begin(), parts.end(), [&](const Formula& part) {
+             return part.kind == Formula::Kind::kAtom &&
+                    !changing_.MayHave(std::string(part.term.Head()));
+           });
+  }
+
   void AddMethod(std::size_t index) {
     const Method& source = program_.domain_.methods[index];
     Scope scope;
@@ -452,11 +468,14 @@ class Compiler {
     compiled.head = Compile(source.head, &scope);
     compiled.num_head_slots = static_cast<std::uint32_t>(scope.names().size());
     for (const Branch& branch : source.branches) {
+      const CompiledPrecondition precondition = Compile(branch.precondition, &scope);
       compiled.branches.push_back(
-          {&branch, Compile(branch.precondition, &scope), Compile(branch.subtasks, &scope)});
+          {&branch, precondition, Compile(branch.subtasks, &scope),
+           branch.with_first_step ? Compile(*branch.with_first_step, &scope) : precondition});
     }
     compiled.num_slots = static_cast<std::uint32_t>(scope.names().size());
     compiled.variables = scope.names();
+    compiled.is_fixed = compiled.num_slots == compiled.num_head_slots && IsFixed(source);
     EnsureAt(&program_.methods_of_, terms_.Symbol(source.head.Head()).index()).push_back(&compiled);
   }
 
@@ -537,9 +556,9 @@ class Compiler {
     Scope scope;
     program_.root_branch_.label = program_.problem_.name;
     program_.root_.head = Constant(Term());
-    program_.root_.branches.push_back({&program_.root_branch_,
-                                       Compile(program_.problem_.parameters, &scope),
-                                       Compile(program_.problem_.tasks, &scope)});
+    const CompiledPrecondition parameters = Compile(program_.problem_.parameters, &scope);
+    program_.root_.branches.push_back(
+        {&program_.root_branch_, parameters, Compile(program_.problem_.tasks, &scope), parameters});
     CheckTasks(program_.problem_, program_.domain_);
     program_.root_.index = -1;
     program_.root_.num_slots = static_cast<std::uint32_t>(scope.names().size());
@@ -554,6 +573,7 @@ class Compiler {
   Program& program_;
   const Functions& functions_;
   TermTable& terms_;
+  const PredicateSet changing_;  // by steps
   std::string source_;
 };
 
@@ -569,6 +589,11 @@ const CompiledOperator* Program::FindOperator(Term name) const {
 
 const std::vector<const CompiledMethod*>& Program::Methods(Term name) const {
   return name.index() < methods_of_.size() ? methods_of_[name.index()] : no_methods_;
+}
+
+bool Program::leaves_order_open() const {
+  return std::any_of(networks_.begin(), networks_.end(),
+                     [](const CompiledNetwork& network) { return !network.chain; });
 }
 
 void Program::FailUnhandled(const std::string& name, const std::string& task) const {

@@ -97,6 +97,7 @@ struct CompiledBranch {
   const Branch* source{nullptr};
   CompiledPrecondition precondition;
   const CompiledNetwork* subtasks{nullptr};
+  CompiledPrecondition with_first_step;  ///< as Branch's; or the precondition
 };
 
 struct CompiledMethod {
@@ -107,6 +108,8 @@ struct CompiledMethod {
   std::uint32_t num_head_slots{0};
   std::vector<CompiledBranch> branches;
   std::vector<std::string> variables;
+  /// One reduction at most, the same in every state: it can as well be done at once.
+  bool is_fixed{false};
 };
 
 struct CompiledAxiom {
@@ -141,6 +144,8 @@ class Program {
   const std::vector<Term>& facts() const { return facts_; }
   /// Names that nothing stands for, with their places: errors only where they are reached.
   const std::vector<std::string>& warnings() const { return warnings_; }
+  /// Some tasks have no order among them.
+  bool leaves_order_open() const;
   bool immediate_reductions() const { return domain_.language == Domain::Language::kShop2; }
   /// @throws ConfigError: place and text of the condition, then `what` is wrong with it.
   [[noreturn]] void Fail(const Formula& condition, const std::string& what) const;

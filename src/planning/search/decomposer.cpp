@@ -5,8 +5,13 @@
 namespace hires::planning {
 
 Decomposer::Decomposer(const Program& program, bool loop_check, SearchPath* path,
-                       const SearchLimits* limits, SearchTrace* trace)
-    : program_(program), loop_check_(loop_check), path_(*path), limits_(*limits), trace_(*trace) {}
+                       const SearchLimits* limits, Explored* explored, SearchTrace* trace)
+    : program_(program),
+      loop_check_(loop_check),
+      path_(*path),
+      limits_(*limits),
+      explored_(*explored),
+      trace_(*trace) {}
 
 MethodChoice Decomposer::Begin(std::uint32_t node,
                                const std::vector<const CompiledMethod*>& methods) {
@@ -108,7 +113,9 @@ bool Decomposer::NextBranch(MethodChoice* choice) {
 
 /// The first binding of the branch.
 bool Decomposer::Solve(MethodChoice* choice) {
-  const CompiledPrecondition& precondition = choice->current_branch().precondition;
+  const CompiledBranch& branch = choice->current_branch();
+  const CompiledPrecondition& precondition =
+      looks_ahead_ ? branch.with_first_step : branch.precondition;
   Bindings& bindings = path_.bindings();
   Prover& prover = path_.prover();
   bindings.Undo(choice->entered);
@@ -189,7 +196,7 @@ bool Decomposer::Reduce(MethodChoice* choice) {
   const int immediate = choice->num_variants > 0 ? static_cast<int>(choice->variant) : -1;
   path_.Decompose({choice->node, &method, choice->branch, choice->variables, path_.num_steps()},
                   tasks_, immediate);
-  if (!loop_check_ || !path_.WasHere()) return true;
+  if (!loop_check_ || !path_.WasHere()) return !explored_.IsFutile();
   if (trace_.active()) {
     trace_.Note(path_.network().node(choice->node).task, trace_.Where(method, choice->branch),
                 "leads back to a state and tasks that this path has been through");

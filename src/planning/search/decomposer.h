@@ -7,6 +7,7 @@
 #include "hires/planning/term.h"
 #include "planning/proof/bindings.h"
 #include "planning/proof/program.h"
+#include "planning/search/explored.h"
 #include "planning/search/search_limits.h"
 #include "planning/search/search_path.h"
 #include "planning/search/search_trace.h"
@@ -41,7 +42,10 @@ struct MethodChoice {
 class Decomposer {
  public:
   Decomposer(const Program& program, bool loop_check, SearchPath* path, const SearchLimits* limits,
-             SearchTrace* trace);
+             Explored* explored, SearchTrace* trace);
+
+  /// From now on bindings are left out with which the first step could not be taken at once.
+  void LookAhead() { looks_ahead_ = true; }
 
   /// Nothing is tried yet. @param methods  Are referred to.
   MethodChoice Begin(std::uint32_t node, const std::vector<const CompiledMethod*>& methods);
@@ -68,7 +72,9 @@ class Decomposer {
   const bool loop_check_;
   SearchPath& path_;
   const SearchLimits& limits_;
+  Explored& explored_;
   SearchTrace& trace_;
+  bool looks_ahead_{false};
   std::vector<Term> tasks_;  ///< of the reduction at hand, nested ones in place
 };
 

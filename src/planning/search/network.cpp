@@ -41,17 +41,27 @@ std::uint64_t Network::Share(std::uint32_t node) const {
   return Mix(Mix(terms_->Hash(ready.task), ready.immediate), ready.rest);
 }
 
+void Network::Count(std::uint32_t node) {
+  hash_ += Share(node);
+  content_ += ContentOf(node, nodes_[node].content);
+}
+
+void Network::Discount(std::uint32_t node) {
+  hash_ -= Share(node);
+  content_ -= ContentOf(node, nodes_[node].content);
+}
+
 void Network::MakeReady(std::uint32_t node) {
   Append(kAll, node);
   if (nodes_[node].immediate) Append(kImmediate, node);
-  hash_ += Share(node);
+  Count(node);
   trail_.push_back({What::kReady, node});
 }
 
 void Network::MakeNotReady(std::uint32_t node) {
   Detach(kAll, node);
   if (nodes_[node].immediate) Detach(kImmediate, node);
-  hash_ -= Share(node);
+  Discount(node);
   trail_.push_back({What::kNotReady, node});
 }
 
@@ -64,20 +74,23 @@ void Network::Undo(std::size_t mark, std::uint32_t size) {
       case What::kReady:
         Detach(kAll, change.node);
         if (node.immediate) Detach(kImmediate, change.node);
-        hash_ -= Share(change.node);
+        Discount(change.node);
         break;
       case What::kNotReady:
         Reattach(kAll, change.node);
         if (node.immediate) Reattach(kImmediate, change.node);
-        hash_ += Share(change.node);
+        Count(change.node);
         break;
       case What::kWaiting:
         ++node.waiting;
         break;
       case What::kLeft:
-        ++node.left;
+        if (node.left++ == 0 && node.join != 0) BeginJoin(node.join);
         break;
       case What::kDecomposed:
+        EndJoins(node.first_child);
+        if (node.join != 0) EndJoin(node.join);
+        node.join = 0;
         node.subtasks = nullptr;
         node.first_child = kNone;
         node.left = 0;
@@ -130,25 +143,80 @@ void Network::LayOut(std::uint32_t node, const CompiledNetwork* network, Layout*
 
 // What follows an item: along a chain the next items, fold by fold; elsewhere "the join of these
 // siblings, then what follows the parent". A join is told from others by its node, which no other
-// node on a path shares. Where nothing follows the parent, nothing waits for the join either.
+// node on a path shares; in the content, which is to be equal on all paths, by its tasks and their
+// order. Where nothing follows the parent, nothing waits for the join either.
 void Network::SetRests(std::uint32_t node) {
   const CompiledNetwork& network = *nodes_[node].subtasks;
   const std::uint32_t first = nodes_[node].first_child;
   std::uint64_t rest = nodes_[node].rest;
+  std::uint64_t content = nodes_[node].content;
   bool ordered = network.items.size() > 1 && !network.chain;
   for (const CompiledNetwork::Item& item : network.items) {
-    if (ordered && item.num_before > 0 && rest == 0) rest = 1;
+    if (ordered && item.num_before > 0 && rest == 0) rest = content = 1;
+  }
+  if (!network.chain && rest != 0) {
+    nodes_[node].join = content = ContentOf(node, content) | 1;
+    BeginJoin(content);
   }
   for (std::size_t i = network.items.size(); i-- > 0;) {
     const std::uint32_t child = first + static_cast<std::uint32_t>(i);
     if (!network.chain) {
       nodes_[child].rest = rest == 0 ? 0 : Mix(Mix(node, i), rest);
+      nodes_[child].content = rest == 0 ? 0 : Mix(content, i);
     } else {
       nodes_[child].rest = rest;
+      nodes_[child].content = content;
     }
     if (network.items[i].network != nullptr) SetRests(child);
-    if (network.chain) rest = HashOf(child, rest);
+    if (!network.chain) continue;
+    rest = HashOf(child, rest);
+    content = ContentOf(child, content);
   }
+}
+
+void Network::BeginJoin(std::uint64_t join) {
+  if (joins_[join]++ > 0) ++num_twins_;
+}
+
+void Network::EndJoin(std::uint64_t join) {
+  const auto entry = joins_.find(join);
+  if (--entry->second > 0) {
+    --num_twins_;
+  } else {
+    joins_.erase(entry);
+  }
+}
+
+/// Of the networks in a network that is taken back.
+void Network::EndJoins(std::uint32_t from) {
+  for (std::uint32_t node = from; node < size(); ++node) {
+    if (nodes_[node].join != 0 && nodes_[node].left > 0) EndJoin(nodes_[node].join);
+  }
+}
+
+std::uint32_t Network::FirstBelowOpen(std::uint32_t node) const {
+  while (node != kNone && nodes_[node].left == 0) node = nodes_[node].parent;
+  return node == kNone ? 0 : nodes_[node].first_child;
+}
+
+std::uint64_t Network::ContentFrom(std::uint32_t node) const {
+  std::uint64_t content = 0;
+  for (std::uint32_t ready = FirstReady(); ready != 0; ready = NextReady(ready)) {
+    if (ready >= node) content += ContentOf(ready, nodes_[ready].content);
+  }
+  return content;
+}
+
+/// Of a task, or of a network with all of its tasks and their order, and of what follows.
+std::uint64_t Network::ContentOf(std::uint32_t node, std::uint64_t rest) const {
+  const Node& item = nodes_[node];
+  if (item.first_child == kNone) return Mix(Mix(terms_->Hash(item.task), item.immediate), rest);
+  std::uint64_t hash = Mix(item.subtasks->items.size(), rest);
+  for (std::uint32_t i = 0; i < item.subtasks->items.size(); ++i) {
+    hash = Mix(hash, ContentOf(item.first_child + i, item.subtasks->items[i].num_before));
+    for (const std::uint32_t after : item.subtasks->items[i].after) hash = Mix(hash, after);
+  }
+  return hash;
 }
 
 std::uint64_t Network::HashOf(std::uint32_t node, std::uint64_t rest) const {
@@ -186,6 +254,7 @@ void Network::Complete(std::uint32_t node) {
     }
     trail_.push_back({What::kLeft, parent});
     if (--nodes_[parent].left > 0) return;
+    if (nodes_[parent].join != 0) EndJoin(nodes_[parent].join);
     node = parent;
   }
 }

@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <unordered_map>
 #include <vector>
 
 #include "hires/planning/term.h"
@@ -27,7 +28,9 @@ class Network {
     std::uint32_t waiting{0};                  ///< items that have to be done before
     std::uint32_t left{0};                     ///< children not done yet
     bool immediate{false};
-    std::uint64_t rest{0};  ///< hash of what follows when this is done
+    std::uint64_t rest{0};     ///< hash of what follows when this is done
+    std::uint64_t content{0};  ///< likewise, of tasks and order alone
+    std::uint64_t join{0};     ///< of a network in which something waits for several: hash of it
     struct {
       std::uint32_t previous, next;
     } ready[2]{{kNone, kNone}, {kNone, kNone}};  ///< among all ready tasks; the immediate ones
@@ -52,8 +55,23 @@ class Network {
   const Node& node(std::uint32_t index) const { return nodes_[index]; }
   bool done() const { return FirstReady() == 0; }
 
-  /// Of the tasks left with their order; meaningful while all of them are ground.
+  /// The first child of the nearest node from `node` upwards that is not done: it and all nodes
+  /// after it stand below that one, where no task outside of it was taken up in between.
+  std::uint32_t FirstBelowOpen(std::uint32_t node) const;
+
+  /// Of the tasks left with their order; meaningful while all of them are ground. Tells situations
+  /// of one path apart.
   std::uint64_t hash() const { return hash_; }
+  /// Likewise, and equal wherever the same tasks are left in the same order, on whatever path; of
+  /// no use where two networks with the same tasks and order are under way, as it does not tell
+  /// whose tasks are left, or where several tasks are to go on at once.
+  std::uint64_t content() const { return content_; }
+  std::uint64_t ContentFrom(std::uint32_t node) const;  ///< of ready tasks from that node on
+  bool has_content() const {
+    const std::uint32_t immediate = FirstImmediate();  // of several the first goes on, and no other
+    return num_open_ == 0 && num_twins_ == 0 &&
+           (immediate == 1 || nodes_[immediate].ready[1].next == 1);
+  }
   bool all_ground() const { return num_open_ == 0; }
   std::size_t bytes() const {
     return nodes_.capacity() * sizeof(Node) + trail_.capacity() * sizeof(Change);
@@ -73,6 +91,10 @@ class Network {
   void LayOut(std::uint32_t node, const CompiledNetwork* network, Layout* layout, bool first);
   void SetRests(std::uint32_t node);
   std::uint64_t HashOf(std::uint32_t node, std::uint64_t rest) const;
+  std::uint64_t ContentOf(std::uint32_t node, std::uint64_t rest) const;
+  void BeginJoin(std::uint64_t join);
+  void EndJoin(std::uint64_t join);
+  void EndJoins(std::uint32_t from);
   void Activate(std::uint32_t node);
   void Complete(std::uint32_t node);
   void MakeReady(std::uint32_t node);
@@ -81,12 +103,17 @@ class Network {
   void Detach(int list, std::uint32_t node);
   void Reattach(int list, std::uint32_t node);
   std::uint64_t Share(std::uint32_t node) const;
+  void Count(std::uint32_t node);
+  void Discount(std::uint32_t node);
 
   TermTable* terms_;
   std::vector<Node> nodes_;
   std::vector<Change> trail_;
   std::uint64_t hash_{0};
+  std::uint64_t content_{0};
   std::uint32_t num_open_{0};
+  std::unordered_map<std::uint64_t, int> joins_;  ///< under way, by hash: how many
+  int num_twins_{0};                              ///< beyond one of a hash
 };
 
 }  // namespace hires::planning

@@ -6,6 +6,7 @@
 #include "hires/planning/datum_reader.h"
 #include "planning/check/known_names.h"
 #include "planning/proof/program.h"
+#include "planning/search/passes.h"
 #include "planning/search/search.h"
 
 namespace hires::planning {
@@ -39,25 +40,6 @@ StopQuestion WithMemoryLimit(std::size_t max_bytes, StopQuestion next) {
 }
 
 namespace {
-
-/// Plans of an HDDL domain: at first without left recursion, which the competition's domains are
-/// full of and on which a search from left to right may never come back; then, if more is wanted
-/// and something was left out, with it, in addition to what was found.
-PlanResult FindHddlPlans(const Program& program, TermTable* terms, const PlanRequest& request) {
-  Search careful(program, terms, request, false);
-  PlanResult result = careful.Run();
-  const bool is_answered = request.which == Which::kFirst
-                               ? result.outcome != PlanOutcome::kNoPlan
-                               : careful.stopped() || careful.has_enough();
-  if (is_answered || !careful.gave_up_recursion()) return result;
-  const Progress before = result.progress;
-  Search whole(program, terms, request);
-  whole.BeginWith(&careful, std::move(result.plans));
-  result = whole.Run();
-  result.progress.expansions += before.expansions;
-  result.progress.inferences += before.inferences;
-  return result;
-}
 
 PlanResult FindPlans(const Program& program, TermTable* terms, const PlanRequest& request) {
   if (program.domain().language == Domain::Language::kHddl) {
@@ -94,7 +76,7 @@ PlanResult FindPlans(const Domain& domain, const Problem& problem, const PlanReq
   }
   PlanResult result = FindPlans(program, &terms, request);
   if (request.explain && result.outcome == PlanOutcome::kNoPlan) {
-    result.deepest = Search(program, &terms, request, true, true).Run().deepest;
+    result.deepest = Search(program, &terms, request, {}, true).Run().deepest;
     result.unknown_names = UnknownSymbols(TasksOf(result.deepest), domain, problem);
   }
   result.warnings = program.warnings();

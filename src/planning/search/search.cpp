@@ -10,17 +10,21 @@
 namespace hires::planning {
 
 Search::Search(const Program& program, TermTable* terms, const PlanRequest& request,
-               bool left_recursion, bool keep_deepest)
+               const SearchMode& mode, bool keep_deepest)
     : program_(program),
-      left_recursion_(left_recursion),
+      mode_(mode),
       path_(program, terms),
-      limits_(request),
+      limits_(request, mode.budget),
+      explored_(request, &path_, &limits_),
       trace_(program, &path_, request.max_trace, keep_deepest),
       plans_(request, &path_),
-      decomposer_(program, request.loop_check, &path_, &limits_, &trace_),
+      decomposer_(program, request.loop_check, &path_, &limits_, &explored_, &trace_),
       applier_(program, request, &path_, &limits_, &plans_, &trace_),
       root_methods_{&program.root()} {
   path_.prover().set_interrupt([this] { return Ask(); });
+  if (mode.most_repeats < SearchMode::kAnyNumber) path_.CountRepeats();
+  if (!mode.interleaves) path_.FinishWhatIsBegun();
+  if (mode.looks_ahead) decomposer_.LookAhead();
 }
 
 PlanResult Search::Run() {
@@ -50,9 +54,27 @@ bool Search::Forward() {
   }
   const std::uint32_t immediate = network.FirstImmediate();
   if (immediate != 1) return Process(immediate);
-  const std::uint32_t ready = network.FirstReady();
-  if (network.NextReady(ready) != 0) choices_.emplace_back(TaskChoice{path_.Now(), ready});
+  const std::uint32_t fixed = FirstFixed();
+  if (fixed != 0) return Process(fixed);
+  const std::uint32_t ready = path_.FirstReady();
+  const std::uint32_t focus = path_.focus();
+  if (path_.NextReady(ready, focus) != 0)
+    choices_.emplace_back(TaskChoice{path_.Now(), ready, focus});
   return Process(ready);
+}
+
+/// A task of which it makes no difference when it is decomposed, where any could come next; or 0.
+/// In SHOP2 the first that is ready comes first, whatever it is.
+std::uint32_t Search::FirstFixed() {
+  const Network& network = path_.network();
+  if (!mode_.interleaves || program_.domain().language != Domain::Language::kHddl) return 0;
+  if (network.NextReady(network.FirstReady()) == 0) return 0;
+  for (std::uint32_t ready = network.FirstReady(); ready != 0; ready = network.NextReady(ready)) {
+    const Term task = network.node(ready).task;
+    const auto& methods = program_.Methods(path_.terms().head(task));
+    if (methods.size() == 1 && methods[0]->is_fixed) return ready;
+  }
+  return 0;
 }
 
 /// To the last place with another way, and into it.
@@ -66,9 +88,9 @@ bool Search::Backward() {
 
 bool Search::TryNext(TaskChoice* choice) {
   path_.ReturnTo(choice->moment);
-  const std::uint32_t ready = path_.network().NextReady(choice->node);
+  const std::uint32_t ready = path_.NextReady(choice->node, choice->focus);
   choice->node = ready;
-  if (path_.network().NextReady(ready) == 0) choices_.pop_back();
+  if (path_.NextReady(ready, choice->focus) == 0) choices_.pop_back();
   return Process(ready);
 }
 
@@ -94,7 +116,7 @@ bool Search::Process(std::uint32_t node) {
                     program_.domain().source, terms.ToString(task)));
   }
   path_.GoDeeper();
-  if (terms.text(name).front() == '!') return applier_.Apply(node);
+  if (terms.text(name).front() == '!') return applier_.Apply(node) && !explored_.IsFutile();
   const auto& methods = MethodsOf(task);
   return !IsGivenUp(node, task) && Decompose(node, methods);
 }
@@ -109,9 +131,10 @@ const std::vector<const CompiledMethod*>& Search::MethodsOf(Term task) {
 }
 
 bool Search::IsGivenUp(std::uint32_t node, Term task) {
-  if (left_recursion_ || !path_.IsLeftRecursion(node, task)) return false;
+  const bool is_bounded = mode_.most_repeats < SearchMode::kAnyNumber;
+  if (!is_bounded || path_.NumRepeats(node, task) <= mode_.most_repeats) return false;
   gave_up_recursion_ = true;
-  trace_.Note(task, "", "comes up again below itself without a step in between");
+  trace_.Note(task, "", "comes up again below itself in the same state");
   return true;
 }
 
@@ -135,7 +158,7 @@ Progress Search::CurrentProgress() const {
   progress.inferences = path_.prover().inferences();
   progress.depth = path_.depth();
   progress.cost = path_.cost();
-  progress.bytes = path_.bytes() + choices_.capacity() * sizeof(Choice);
+  progress.bytes = path_.bytes() + explored_.bytes() + choices_.capacity() * sizeof(Choice);
   progress.plans = static_cast<int>(plans_.size());
   progress.best_cost = plans_.best_cost();
   return progress;

@@ -6,7 +6,8 @@ namespace hires::planning {
 
 bool SearchLimits::Ask(const Progress& progress) {
   most_bytes_ = std::max(most_bytes_, progress.bytes);
-  if (request_.stop && !stopped()) stop_ = request_.stop(progress);
+  if (request_.stop && stop_ == Stop::kContinue) stop_ = request_.stop(progress);
+  is_spent_ = is_spent_ || expansions_ >= budget_;
   return stopped();
 }
 

@@ -25,6 +25,7 @@ SearchPath::Moment SearchPath::Now() {
           network_.Remember(),
           protections_.Remember(),
           visited_.Remember(),
+          begun_.Remember(),
           terms_.Mark(),
           network_.size(),
           steps_.size(),
@@ -39,6 +40,7 @@ void SearchPath::UndoSteps(const Moment& moment) {
   state_.Undo(moment.state);
   protections_.Undo(moment.protections);
   visited_.Undo(moment.visited);
+  begun_.Undo(moment.begun);
   steps_.resize(moment.num_steps);
   decompositions_.resize(moment.num_decompositions);
   depth_ = moment.depth;
@@ -55,14 +57,17 @@ void SearchPath::ReturnTo(const Moment& moment) {
 void SearchPath::Decompose(const Decomposition& decomposition, const std::vector<Term>& tasks,
                            int immediate) {
   const CompiledBranch& branch = decomposition.method->branches[decomposition.branch];
+  if (counts_repeats_) NoteBegun(decomposition.node);
   decompositions_.push_back(decomposition);
   network_.Decompose(decomposition.node, branch.subtasks, tasks, immediate);
+  if (focuses_) focus_ = network_.FirstBelowOpen(decomposition.node);
 }
 
 void SearchPath::Finish(const Step& step) {
   cost_ += step.cost;
   steps_.push_back(step);
   network_.Finish(step.node);
+  if (focuses_) focus_ = network_.FirstBelowOpen(step.node);
 }
 
 bool SearchPath::WasHere() {
@@ -71,23 +76,44 @@ bool SearchPath::WasHere() {
   return !visited_.Insert(Mix(Mix(state, network_.hash()), protections_.hash()));
 }
 
-bool SearchPath::IsLeftRecursion(std::uint32_t node, Term task) const {
-  for (std::size_t i = decompositions_.size(); i-- > 0;) {
-    const Decomposition& above = decompositions_[i];
-    if (above.num_steps != steps_.size()) return false;
-    if (network_.node(above.node).task != task) continue;
-    for (std::uint32_t parent = network_.node(node).parent; parent != Network::kNone;
-         parent = network_.node(parent).parent) {
-      if (parent == above.node) return true;
-    }
+std::uint64_t SearchPath::situation() const {
+  const std::uint64_t state = ages_count_ ? state_.ordered_hash() : state_.hash();
+  const std::uint64_t situation = Mix(Mix(state, network_.content()), protections_.hash());
+  return focus_ == 0 ? situation : Mix(situation, network_.ContentFrom(focus_));
+}
+
+void SearchPath::NoteBegun(std::uint32_t node) {
+  if (states_.size() <= node) states_.resize(node + 1);
+  states_[node] = state_.hash();
+  begun_.Insert(Mix(terms_.Hash(network_.node(node).task), state_.hash()));
+}
+
+int SearchPath::NumRepeats(std::uint32_t node, Term task) const {
+  if (!begun_.Contains(Mix(terms_.Hash(task), state_.hash()))) return 0;
+  int count = 0;
+  for (std::uint32_t above = network_.node(node).parent; above != Network::kNone;
+       above = network_.node(above).parent) {
+    if (network_.node(above).task == task && states_[above] == state_.hash()) ++count;
   }
-  return false;
+  return count;
+}
+
+std::uint32_t SearchPath::FirstReady() const {
+  const std::uint32_t first = network_.FirstReady();
+  return first == 0 || first >= focus_ ? first : NextReady(first, focus_);
+}
+
+std::uint32_t SearchPath::NextReady(std::uint32_t node, std::uint32_t focus) const {
+  do {
+    node = network_.NextReady(node);
+  } while (node != 0 && node < focus);
+  return node;
 }
 
 std::size_t SearchPath::bytes() const {
   return terms_.bytes() + bindings_.bytes() + instances_.bytes() + state_.bytes() +
-         network_.bytes() + visited_.bytes() + prover_.bytes() + steps_.capacity() * sizeof(Step) +
-         decompositions_.capacity() * sizeof(Decomposition);
+         network_.bytes() + visited_.bytes() + begun_.bytes() + prover_.bytes() +
+         steps_.capacity() * sizeof(Step) + decompositions_.capacity() * sizeof(Decomposition);
 }
 
 }  // namespace hires::planning

@@ -38,7 +38,7 @@ class SearchPath {
   struct Moment {
     Bindings::Mark bindings;
     Prover::Mark prover;
-    std::size_t state, tasks, protections, visited, pairs;
+    std::size_t state, tasks, protections, visited, begun, pairs;
     std::uint32_t nodes;
     std::size_t num_steps, num_decompositions;
     std::size_t choices;  ///< of the prover
@@ -66,8 +66,21 @@ class SearchPath {
   Term Task(std::uint32_t node) { return bindings_.Resolve(network_.node(node).task); }
   /// True where the path has been through the same state and tasks; notes that it was here now.
   bool WasHere();
-  /// Among the decompositions since the last step, one of an ancestor of `node` is of `task`.
-  bool IsLeftRecursion(std::uint32_t node, Term task) const;
+  /// Of the facts, the tasks left and the protections, whatever path led to them.
+  std::uint64_t situation() const;
+  bool has_situation() const { return network_.has_content(); }  ///< otherwise it says nothing
+  /// From now on it is noted in which state each task is decomposed, for NumRepeats().
+  void CountRepeats() { counts_repeats_ = true; }
+  /// How many ancestors of `node` are of `task` and were decomposed in this very state.
+  int NumRepeats(std::uint32_t node, Term task) const;
+
+  /// From now on a task that was begun is done, with all of its subtasks, before another begins.
+  void FinishWhatIsBegun() { focuses_ = true; }
+  /// The first task that can come next, and others after it; 0: there is none.
+  /// @param focus  as focus() was.
+  std::uint32_t FirstReady() const;
+  std::uint32_t NextReady(std::uint32_t node, std::uint32_t focus) const;
+  std::uint32_t focus() const { return focus_; }
 
   int depth() const { return depth_; }  ///< decompositions and steps
   double cost() const { return cost_; }
@@ -85,6 +98,8 @@ class SearchPath {
   std::size_t bytes() const;
 
  private:
+  void NoteBegun(std::uint32_t node);
+
   TermTable& terms_;
   const bool ages_count_;  ///< of facts, for which binding comes first
   Bindings bindings_;
@@ -93,6 +108,11 @@ class SearchPath {
   Network network_;
   Protections protections_;
   Visited visited_;
+  Visited begun_;                      ///< tasks decomposed, each with the state
+  std::vector<std::uint64_t> states_;  ///< by node: in which it was decomposed, by hash
+  bool counts_repeats_{false};
+  bool focuses_{false};
+  std::uint32_t focus_{0};  ///< only tasks from this node on can come next
   Prover prover_;
   std::vector<Step> steps_;
   std::vector<Decomposition> decompositions_;

@@ -13,12 +13,15 @@ class Visited {
 
   /// False if the path has been there before.
   bool Insert(std::uint64_t key) {
-    for (std::uint32_t i = buckets_[Bucket(key)]; i != kEnd; i = entries_[i].next) {
-      if (entries_[i].key == key) return false;
-    }
+    if (Contains(key)) return false;
     if (entries_.size() >= buckets_.size()) Grow();
     Chain(key);
     return true;
+  }
+  bool Contains(std::uint64_t key) const {
+    std::uint32_t i = buckets_[Bucket(key)];
+    while (i != kEnd && entries_[i].key != key) i = entries_[i].next;
+    return i != kEnd;
   }
   std::size_t Remember() const { return entries_.size(); }
   void Undo(std::size_t mark) {
