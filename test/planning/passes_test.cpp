@@ -96,7 +96,9 @@ TEST(PassesTest, OnePlanIsFoundWhereThereIsOneAndTheCheapestIsThat) {
     const PlanResult best = find(Which::kBest, true);
     SCOPED_TRACE(text + "\n" + tasks);
     ASSERT_EQ(first.outcome, all.outcome);
-    if (best.outcome != PlanOutcome::kLimitTime) ASSERT_EQ(best.outcome, all.outcome);
+    if (best.outcome != PlanOutcome::kLimitTime) {
+      ASSERT_EQ(best.outcome, all.outcome);
+    }
     ++(first.plans.empty() ? num_none : num_found);
     if (first.plans.empty()) continue;
     ASSERT_THAT(ValidatePlan(domain, problem, first.plans[0]), testing::IsEmpty());
