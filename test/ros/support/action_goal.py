@@ -141,7 +141,10 @@ class ActionGoal:
             self.result()
 
     def result(self):
-        self._wait(self.is_done, 'the result')
+        """As long as there is feedback a goal is on its way, however slow the computer is."""
+        while not self.is_done():
+            seen = len(self.feedback)
+            self._wait(lambda seen=seen: self.is_done() or len(self.feedback) > seen, 'the result')
         return self._handle.get_result()
 
     def state(self):
