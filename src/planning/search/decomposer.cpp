@@ -196,6 +196,7 @@ bool Decomposer::Reduce(MethodChoice* choice) {
   const int immediate = choice->num_variants > 0 ? static_cast<int>(choice->variant) : -1;
   path_.Decompose({choice->node, &method, choice->branch, choice->variables, path_.num_steps()},
                   tasks_, immediate);
+  // Why it led nowhere was noted when the search was there before.
   if (!loop_check_ || !path_.WasHere()) return !explored_.IsFutile();
   if (trace_.active()) {
     trace_.Note(path_.network().node(choice->node).task, trace_.Where(method, choice->branch),

@@ -191,6 +191,7 @@ void Network::EndJoin(std::uint64_t join) {
 void Network::EndJoins(std::uint32_t from) {
   for (std::uint32_t node = from; node < size(); ++node) {
     if (nodes_[node].join != 0 && nodes_[node].left > 0) EndJoin(nodes_[node].join);
+    nodes_[node].join = 0;  // they may still stand when what is above them is taken back
   }
 }
 

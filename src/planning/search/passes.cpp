@@ -27,22 +27,49 @@ class Passes {
     request_.stop = [this](const Progress& progress) { return wanted_.stop(Sum(progress)); };
   }
 
-  PlanResult Run() { return wanted_.which == Which::kFirst ? FindFirst() : FindMore(); }
-
- private:
-  /// One search that went to its end. False: its budget was spent.
-  bool Play(const SearchMode& mode, PlanResult* result) {
-    Search search(program_, terms_, request_, mode);
-    *result = search.Run();
-    Add(&search, result);
-    return !search.is_spent();
+  /// Until a search went to its end and left nothing out for its recursion, or enough is found. The
+  /// one without repeats has half of the time at least.
+  PlanResult Run() {
+    PlanResult result;
+    bool one_by_one = !is_ordered_ && wanted_.which == Which::kFirst;
+    std::vector<int> bounds{0};
+    int next_bound = 1;
+    bool is_recursive = false;
+    for (std::uint64_t budget = kFirstBudget;; budget *= kGrowth) {
+      if (one_by_one) {
+        one_by_one = !Play({0, false, budget, true}, &result);
+        if (is_answered_) return result;
+      }
+      const std::uint64_t share = budget / std::max<std::size_t>(bounds.size() - 1, 1);
+      for (auto bound = bounds.begin(); bound != bounds.end();) {
+        const bool is_over =
+            Play({*bound, true, *bound == 0 ? budget : share, is_ordered_}, &result);
+        if (is_answered_ || (is_over && is_whole_)) return result;
+        is_recursive = is_recursive || !is_whole_;
+        bound = is_over ? bounds.erase(bound) : bound + 1;
+      }
+      const bool is_deepest = next_bound > request_.max_depth;
+      if (is_deepest && bounds.empty()) return result;
+      if (!is_recursive || is_deepest) continue;
+      bounds.push_back(next_bound);
+      next_bound *= 2;
+    }
   }
 
-  void Add(Search* search, PlanResult* result) {
+ private:
+  /// One search, in addition to what was found. False: its budget was spent.
+  bool Play(const SearchMode& mode, PlanResult* result) {
+    auto search = std::make_unique<Search>(program_, terms_, request_, mode);
+    if (last_) search->BeginWith(last_.get(), std::move(result->plans));
+    last_.reset();
+    *result = search->Run();
     result->progress = Sum(result->progress);
     before_ = result->progress;
-    has_stopped_ = search->stopped() && !search->is_spent();
-    gave_up_recursion_ = search->gave_up_recursion();
+    const bool is_spent = search->is_spent();
+    is_answered_ = search->has_enough() || (search->stopped() && !is_spent);
+    is_whole_ = !search->gave_up_recursion();
+    last_ = std::move(search);
+    return !is_spent;
   }
 
   Progress Sum(Progress progress) const {
@@ -52,70 +79,15 @@ class Passes {
     return progress;
   }
 
-  bool IsAnswered(const PlanResult& result) const {
-    return has_stopped_ || result.outcome == PlanOutcome::kFound;
-  }
-
-  PlanResult FindFirst() {
-    PlanResult result;
-    bool one_by_one = !is_ordered_;
-    for (std::uint64_t budget = kFirstBudget;; budget *= kGrowth) {
-      if (one_by_one) {
-        one_by_one = !Play({0, false, budget, true}, &result);
-        if (IsAnswered(result)) return result;
-      }
-      if (!Play({0, true, one_by_one ? budget : SearchLimits::kAnyNumber, is_ordered_}, &result))
-        continue;
-      if (result.outcome != PlanOutcome::kNoPlan || !gave_up_recursion_) return result;
-      return FindFirstWithRecursion();
-    }
-  }
-
-  PlanResult FindFirstWithRecursion() {
-    PlanResult result;
-    std::vector<int> bounds{1};
-    for (std::uint64_t budget = kFirstBudget;; budget *= kGrowth) {
-      for (auto bound = bounds.begin(); bound != bounds.end();) {
-        const bool is_over = Play({*bound, true, budget, is_ordered_}, &result);
-        if (IsAnswered(result)) return result;
-        if (is_over && (result.outcome != PlanOutcome::kNoPlan || !gave_up_recursion_))
-          return result;
-        last_bound_ = std::max(last_bound_, *bound);
-        bound = is_over ? bounds.erase(bound) : bound + 1;
-      }
-      bounds.push_back(2 * last_bound_);
-    }
-  }
-
-  SearchMode Bounded(int most_repeats) const {
-    return {most_repeats, true, SearchLimits::kAnyNumber, is_ordered_};
-  }
-
-  /// The cheapest plan, or all.
-  PlanResult FindMore() {
-    auto search = std::make_unique<Search>(program_, terms_, request_, Bounded(0));
-    PlanResult result = search->Run();
-    Add(search.get(), &result);
-    for (int bound = 1;; bound *= 2) {
-      if (has_stopped_ || search->has_enough() || !gave_up_recursion_) return result;
-      if (bound / 2 >= request_.max_depth) return result;
-      auto next = std::make_unique<Search>(program_, terms_, request_, Bounded(bound));
-      next->BeginWith(search.get(), std::move(result.plans));
-      search = std::move(next);
-      result = search->Run();
-      Add(search.get(), &result);
-    }
-  }
-
   const Program& program_;
   TermTable* terms_;
   const PlanRequest& wanted_;
   PlanRequest request_;
   const bool is_ordered_;  // all tasks
   Progress before_;        ///< of the searches that are over
-  bool has_stopped_{false};
-  bool gave_up_recursion_{false};
-  int last_bound_{1};
+  std::unique_ptr<Search> last_;
+  bool is_answered_{false};  // enough was found, or the caller wants no more
+  bool is_whole_{false};     // the last search left nothing out for its recursion
 };
 
 }  // namespace
