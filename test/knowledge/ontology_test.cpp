@@ -204,11 +204,13 @@ TEST(OntologyTest, WhatIsBeyondTheSubsetIsPassedOverWithOneWarning) {
       {"\nrace:mug1 a race:Mug , owl:NamedIndividual ; race:hasPose race:p1 .\n"
        "race:p1 a race:Pose .\n",
        "individuals (1), owl:NamedIndividual (1), statements about individuals (1)", 14},
-      {"race:Mug race:likes race:Pose .\n", "statements by what is no word of OWL (1)", 13},
+      {"race:Mug <urn:skos#note> race:Pose .\n", "statements by what is no word of OWL (1)", 13},
       {"[] race:likes owl:Thing .\n", "nodes without a name (1)", 13},
       {"<urn:test:race#a%20b> a owl:Class ; rdfs:subClassOf race:Mug .\n", "is no name", 13},
       {"race:Mug rdfs:subClassOf <urn:dul#Artifact> .\n<urn:dul#A> rdfs:subClassOf race:Mug .\n",
-       "statements about what no file declares (1), superclasses that no file declares (1)", 13},
+       "statements about what no file declares (1), superclasses that no file declares (1: "
+       "Artifact)",
+       13},
       {"race:at a owl:DatatypeProperty ; rdfs:range xsd:dateTime .\n",
        "relations to values of xsd:dateTime (1)", 13},
       {"race:at a owl:DatatypeProperty .\n", "relations to values without rdfs:range (1)", 13},
@@ -270,7 +272,7 @@ TEST(OntologyTest, NamesOfAFileThatIsImportedAndNotGivenArePassedOver) {
       "race:Cup a owl:Class ; rdfs:subClassOf race:Mug .\n";
   const test_support::LogCatcher log;
   EXPECT_THAT(Read(body).ConceptNames(), ElementsAre("Cup", "Thing"));
-  EXPECT_THAT(log.lines, ElementsAre(HasSubstr("superclasses that no file declares (1)")));
+  EXPECT_THAT(log.lines, ElementsAre(HasSubstr("superclasses that no file declares (1: Mug)")));
   EXPECT_THAT([&] { Read("<urn:test:race> a owl:Ontology .\n" + body); },
               ThrowsMessage<base::ConfigError>(HasSubstr("concept 'Mug' is unknown")));
 }
@@ -400,6 +402,18 @@ const std::vector<Malformed> kMalformed{
     {"LinkAndValue",
      "race:r a owl:ObjectProperty , owl:DatatypeProperty ; rdfs:range owl:Thing .\n",
      {"race:r is an owl:ObjectProperty and an owl:DatatypeProperty", "line 5"}},
+    {"SlipInAClass",
+     "race:A a owl:Clas .\nrace:B a owl:Class ; rdfs:subClassOf race:A .\n",
+     {"'owl:Clas' is no word of OWL; did you mean 'owl:Class", "line 5"}},
+    {"SlipInAPredicate",
+     "race:A a owl:Class .\nrace:B a owl:Class ; rdfs:subclasOf race:A .\n",
+     {"'rdfs:subclasOf' is no word of OWL; did you mean 'rdfs:subClassOf'", "line 6"}},
+    {"OwnPredicate",
+     "race:A a owl:Class .\nrace:B a owl:Class ; race:subClassOf race:A .\n",
+     {"relation 'subClassOf' is unknown", "line 6"}},
+    {"TwoDomainsOneUnknown",
+     "race:A a owl:Class .\nrace:r a owl:ObjectProperty ; rdfs:domain <urn:z#Q> , race:A .\n",
+     {"race:r has two domains", "line 6"}},
     {"RangeOfNobody",
      "race:A a owl:Class .\nrace:r rdfs:range xsd:float .\n",
      {"relation 'r' is unknown", "owl:ObjectProperty", "line 6"}},
@@ -579,6 +593,33 @@ TEST(RdfXmlTest, OtherNotationsOfOwlAreNamedWithWhatConvertsThem) {
                           HasSubstr("o.owl: is " + name + ", wanted Turtle or RDF/XML; convert it"),
                           HasSubstr("robot convert"))));
   }
+}
+
+TEST(RdfXmlTest, DocumentTypesAreAsEditorsWriteThem) {
+  for (const std::string within :
+       {"<!-- [see 1] > -->", "<!ENTITY x \"a]>b\">", "<!ENTITY y 'it &#39;s'>", "<?pi [ ?>"}) {
+    std::string text = kKitchenInXml;
+    text.insert(text.find("[\n") + 2, within);
+    EXPECT_EQ(Ontology::FromText(text, "t.owl").hash(), Read(kKitchen).hash()) << within;
+  }
+}
+
+TEST(RdfXmlTest, WhatRaptorWouldTakeWithoutEndIsRefused) {
+  const auto refused = [](const std::string& text, const std::string& what) {
+    EXPECT_THAT([&] { Ontology::FromText(text, "t.owl"); },
+                ThrowsMessage<base::ConfigError>(AllOf(HasSubstr("t.owl"), HasSubstr(what))));
+  };
+  const std::string ends = "<!DOCTYPE rdf:RDF [<!ENTITY a \"]" + Repeated("</x>", 200) + "\">]>";
+  const std::string root = kXmlHead.substr(kXmlHead.find("<rdf:RDF"));
+  refused(ends + root + Repeated("<a>", 200), "nested more than 100 deep");
+  std::string attributes;
+  for (int i = 0; i < 600; ++i) attributes += " a" + std::to_string(i) + "=\"1\"";
+  refused(kXmlHead + "<a" + attributes + "/></rdf:RDF>", "more than 500 attributes");
+  const std::string entity =
+      "<!DOCTYPE rdf:RDF [<!ENTITY a \"" + std::string(100'000, 'a') + "\">]>";
+  refused(entity + root + "<rdfs:label>" + Repeated("&a;", 5000) + "</rdfs:label></rdf:RDF>",
+          "what its entities stand for");
+  refused(std::string("\xFF\xFE<\0r\0d\0f\0", 10), "UTF-16");
 }
 
 TEST(RdfXmlTest, DepthAndEntitiesAreBounded) {

@@ -3,9 +3,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
-#include <cctype>
 #include <iterator>
+#include <optional>
 #include <set>
 #include <utility>
 
@@ -15,6 +14,7 @@
 #include "hires/base/log.h"
 #include "hires/base/short_text.h"
 #include "hires/base/text.h"
+#include "knowledge/ontology/ontology_words.h"
 
 namespace hires::knowledge {
 namespace {
@@ -27,32 +27,7 @@ constexpr std::size_t kMaxTerms = 5000;
 constexpr const char* kTooMany =
     "more than 5000 concepts, or as many relations; keep what the robot does not need out of it";
 
-const std::string kRdf = "http://www.w3.org/1999/02/22-rdf-syntax-ns#";
-const std::string kRdfs = "http://www.w3.org/2000/01/rdf-schema#";
-const std::string kOwl = "http://www.w3.org/2002/07/owl#";
-const std::string kXsd = "http://www.w3.org/2001/XMLSchema#";
-const std::string kThing = kOwl + "Thing";
-constexpr std::array kDeclaredTypes{"float", "double", "int", "integer", "boolean", "string"};
-
-bool Starts(const std::string& text, const std::string& with) {
-  return text.compare(0, with.size(), with) == 0;
-}
-
-bool IsOfOwl(const std::string& iri) {
-  return Starts(iri, kOwl) || Starts(iri, kRdfs) || Starts(iri, kRdf);
-}
-
-/// "rdf:type" of an IRI that everybody knows, else the IRI itself, for messages.
-std::string Readable(const std::string& iri) {
-  const std::array<std::pair<const char*, const std::string*>, 4> known{
-      {{"rdf:", &kRdf}, {"rdfs:", &kRdfs}, {"owl:", &kOwl}, {"xsd:", &kXsd}}};
-  for (const auto& [prefix, iri_of_prefix] : known) {
-    if (Starts(iri, *iri_of_prefix)) return prefix + iri.substr(iri_of_prefix->size());
-  }
-  return "<" + iri + ">";
-}
-
-std::string Readable(const RdfNode& node) {
+std::string ReadableNode(const RdfNode& node) {
   switch (node.kind) {
     case NodeKind::kIri:
       return Readable(node.value);
@@ -63,53 +38,21 @@ std::string Readable(const RdfNode& node) {
   }
 }
 
-/// Names stand in YAML and in SPARQL, unquoted where possible.
-bool IsName(const std::string& text) {
-  const auto fits = [](unsigned char c) { return std::isalnum(c) != 0 || c == '_' || c == '-'; };
-  return !text.empty() && text.size() <= 200 && std::isalpha(static_cast<unsigned char>(text[0])) &&
-         std::all_of(text.begin(), text.end(), fits);
-}
-
-std::size_t EndOfNamespace(const std::string& iri) {
-  const std::size_t last = iri.find_last_of("#/");
-  const std::size_t end = last != std::string::npos ? last : iri.rfind(':');
-  return end == std::string::npos ? 0 : end + 1;
-}
-
-std::string NamespaceOf(const std::string& iri) { return iri.substr(0, EndOfNamespace(iri)); }
-std::string LastPart(const std::string& iri) { return iri.substr(EndOfNamespace(iri)); }
-
 /// What a node would be called if it were declared.
 std::string NameForMessage(const RdfNode& node) {
-  return node.kind == NodeKind::kIri ? LastPart(node.value).substr(0, 80) : Readable(node);
+  return node.kind == NodeKind::kIri ? LastPart(node.value).substr(0, 80) : ReadableNode(node);
 }
 
-bool IsClass(const std::string& type) { return type == kOwl + "Class" || type == kRdfs + "Class"; }
-
-/// Whether only relations between instances can be of a type of OWL, beside owl:ObjectProperty.
-bool IsKindOfLink(const std::string& type) {
-  static const std::set<std::string> kKinds{
-      kOwl + "TransitiveProperty",        kOwl + "SymmetricProperty",
-      kOwl + "AsymmetricProperty",        kOwl + "ReflexiveProperty",
-      kOwl + "InverseFunctionalProperty", kOwl + "IrreflexiveProperty"};
-  return kKinds.count(type) > 0;
-}
-
-/// Whether what is of a type of OWL is a concept or a relation.
-bool Declares(const std::string& type) {
-  return IsClass(type) || IsKindOfLink(type) || type == kOwl + "ObjectProperty" ||
-         type == kOwl + "DatatypeProperty" || type == kOwl + "FunctionalProperty";
-}
-
-/// Whether an IRI stands for values, be they of a type that is read or not.
-bool IsOfValues(const std::string& iri) {
-  return Starts(iri, kXsd) || iri == kRdfs + "Literal" || Starts(iri, kRdf) ||
-         iri == kOwl + "real" || iri == kOwl + "rational";
-}
-
-bool IsValueType(const std::string& iri) {
-  return std::any_of(kDeclaredTypes.begin(), kDeclaredTypes.end(),
-                     [&](const char* type) { return iri == kXsd + type; });
+/// "A, B, C and 4 more".
+std::string FirstNames(const std::set<std::string>& names) {
+  constexpr std::size_t kMostNamed = 5;
+  std::vector<std::string> first;
+  for (const std::string& name : names) {
+    if (first.size() < kMostNamed) first.push_back(name);
+  }
+  const std::string text = base::Join(first, ", ");
+  if (names.size() <= kMostNamed) return text;
+  return fmt::format("{} and {} more", text, names.size() - kMostNamed);
 }
 
 }  // namespace
@@ -177,7 +120,8 @@ void OntologyBuilder::InventPrefixes() {
     for (const RdfStatement& statement : document.statements) {
       const bool declares =
           statement.predicate == kRdf + "type" && Declares(statement.object.value);
-      if (declares && statement.subject.kind == NodeKind::kIri && statement.subject.value != kThing)
+      if (declares && statement.subject.kind == NodeKind::kIri &&
+          statement.subject.value != kThing && IsPlain(statement.subject.value))
         bare.insert(NamespaceOf(statement.subject.value));
     }
   }
@@ -209,6 +153,7 @@ void OntologyBuilder::DeclareOne(const RdfStatement& statement, Place place) {
   } else if (type == kOwl + "AnnotationProperty") {
     annotations_.insert(statement.subject.value);
   } else if (IsOfOwl(type)) {
+    RequireNoSlip(type, place);
     (type == kOwl + "NamedIndividual" ? individuals_ : others_).insert(statement.subject.value);
     PassOver(Readable(type), place);
   } else {
@@ -256,18 +201,22 @@ bool OntologyBuilder::ImportsMore(const RdfDocument& document) const {
                      });
 }
 
-void OntologyBuilder::PassOver(const std::string& kind, Place place) {
+void OntologyBuilder::PassOver(const std::string& kind, Place place, const std::string& name) {
   PassedOver& passed = passed_over_[place.document];
   if (passed.kinds.empty()) passed.first_line = place.line;
   passed.first_line = std::min(passed.first_line, place.line);
   ++passed.kinds[kind];
+  if (!name.empty()) passed.names[kind].insert(name);
 }
 
 void OntologyBuilder::WarnOfPassedOver() const {
   for (const auto& [document, passed] : passed_over_) {
     std::vector<std::string> kinds;
     for (const auto& [kind, count] : passed.kinds) {
-      kinds.push_back(fmt::format("{} ({})", kind, count));
+      const auto named = passed.names.find(kind);
+      kinds.push_back(named == passed.names.end()
+                          ? fmt::format("{} ({})", kind, count)
+                          : fmt::format("{} ({}: {})", kind, count, FirstNames(named->second)));
     }
     base::Log(base::LogLevel::kWarn,
               fmt::format("{}: passed over, as it is beyond what is read of OWL: {}; the first in "
@@ -298,7 +247,7 @@ void OntologyBuilder::DeclareRelation(const std::string& iri, const std::string&
     FailOnSameName(same->second, term);
   }
   const auto [known, is_new] =
-      relations_.emplace(name, RelationTerm{term, {}, false, {}, {}, false});
+      relations_.emplace(name, RelationTerm{term, {}, false, {}, {}, false, false});
   if (known->second.iri != iri) FailOnSameName(known->second, term);
   names_[iri] = name;
   if (is_new && relations_.size() == kMaxTerms + 1) Fail(place, kTooMany);
@@ -321,7 +270,7 @@ void OntologyBuilder::SetIsLink(RelationTerm* relation, bool is_link, Place plac
 
 /// What fluents cannot name is of no use.
 bool OntologyBuilder::CanBeNamed(const std::string& iri, Place place) {
-  if (IsName(LastPart(iri))) return true;
+  if (IsPlain(iri) && IsName(LastPart(iri))) return true;
   if (others_.insert(iri).second) {
     PassOver(
         "concepts and relations whose last part is no name (a letter, then letters, digits, '_' or "
@@ -378,10 +327,18 @@ void OntologyBuilder::DescribeOne(const RdfStatement& statement, Place place) {
   } else if (statement.predicate == kRdfs + "range") {
     SetRange(statement, place);
   } else if (IsOfOwl(statement.predicate)) {
+    RequireNoSlip(statement.predicate, place);
     PassOver(Readable(statement.predicate), place);
   } else {
+    const RdfNode predicate{NodeKind::kIri, statement.predicate};
+    if (names_.count(predicate.value) == 0 && !IsForeign(predicate, place))
+      RequireRelation(predicate, place);
     PassOver("statements by what is no word of OWL", place);
   }
+}
+
+void OntologyBuilder::RequireNoSlip(const std::string& iri, Place place) {
+  if (const std::optional<std::string> why = WhyNoWord(iri)) Fail(place, *why);
 }
 
 void OntologyBuilder::AddSuperclass(const RdfStatement& statement, Place place) {
@@ -391,19 +348,20 @@ void OntologyBuilder::AddSuperclass(const RdfStatement& statement, Place place) 
   if (statement.object.kind == NodeKind::kBlank) return;  // a restriction; CheckBlanks tells
   if (statement.object.value == statement.subject.value) return;  // as reasoners write
   if (IsForeign(statement.object, place))
-    return PassOver("superclasses that no file declares", place);
+    return PassOver("superclasses that no file declares", place, NameForMessage(statement.object));
   const std::string above = RequireConcept(statement.object, place);
   concepts_.at(below).above.push_back({above, place});
 }
 
 void OntologyBuilder::SetDomain(const RdfStatement& statement, Place place) {
   RelationTerm& relation = RequireRelation(statement.subject, place);
-  if (relation.domain) {
+  if (relation.has_domain) {
     Fail(place,
          fmt::format("relation {} has two domains, which in OWL means both at once; write one, "
                      "alternatives as [ a owl:Class ; owl:unionOf ( ... ) ]",
                      relation.qualified));
   }
+  relation.has_domain = true;
   if (statement.object.kind == NodeKind::kLiteral) FailOnSubset(statement, place);
   if (statement.object.kind == NodeKind::kBlank) {
     relation.domain = UnionOf(statement, place);
@@ -448,12 +406,12 @@ void OntologyBuilder::SetRangeOfValues(const RdfStatement& statement, Place plac
   const RdfNode& object = statement.object;
   if (object.kind == NodeKind::kIri && names_.count(object.value) > 0)
     FailOnKindOfRange(*relation, object, place);
-  relation->range = Readable(object);
+  relation->range = ReadableNode(object);
   if (IsValueType(object.value)) return;
   relation->is_dropped = true;
   PassOver(object.kind == NodeKind::kBlank
                ? "relations to values of a type without a name"
-               : fmt::format("relations to values of {}", Readable(object)),
+               : fmt::format("relations to values of {}", ReadableNode(object)),
            place);
 }
 
@@ -655,8 +613,8 @@ void OntologyBuilder::FailOnSubset(const RdfStatement& statement, Place place) {
        fmt::format("{} {} {} is beyond what is read of OWL: owl:Class with rdfs:subClassOf a named "
                    "class; owl:ObjectProperty, owl:DatatypeProperty, owl:FunctionalProperty with "
                    "rdfs:domain (or owl:unionOf named classes) and rdfs:range; labels and comments",
-                   Readable(statement.subject), Readable(statement.predicate),
-                   Readable(statement.object)));
+                   ReadableNode(statement.subject), Readable(statement.predicate),
+                   ReadableNode(statement.object)));
 }
 
 void OntologyBuilder::FailOnSameName(const Term& known, const Term& other) {
@@ -673,9 +631,10 @@ void OntologyBuilder::FailOnSameName(const Term& known, const Term& other) {
 void OntologyBuilder::FailOnKindOfRange(const RelationTerm& relation, const RdfNode& range,
                                         Place place) {
   const bool is_link = relation.is_link.value_or(true);
-  Fail(place, fmt::format("relation {} is an owl:{}, its range {} does not fit that; wanted {}",
-                          relation.qualified, is_link ? "ObjectProperty" : "DatatypeProperty",
-                          Readable(range), is_link ? "a concept" : "a type of values, xsd:float"));
+  Fail(place,
+       fmt::format("relation {} is an owl:{}, its range {} does not fit that; wanted {}",
+                   relation.qualified, is_link ? "ObjectProperty" : "DatatypeProperty",
+                   ReadableNode(range), is_link ? "a concept" : "a type of values, xsd:float"));
 }
 
 /// A class that is still open has a superclass that is: following those must end in a cycle.

@@ -44,12 +44,14 @@ class OntologyBuilder {
     bool functional{false};
     std::optional<std::vector<std::string>> domain;
     std::optional<std::string> range;
+    bool has_domain{false};  // one of which something is read or not
     bool is_dropped{false};  // its values are of no type that is read
   };
   /// What of a document is beyond what is read of OWL, and says nothing of how names are used.
   struct PassedOver {
     int first_line{0};
-    std::map<std::string, int> kinds;  // "owl:disjointWith" -> how often
+    std::map<std::string, int> kinds;                    // "owl:disjointWith" -> how often
+    std::map<std::string, std::set<std::string>> names;  // of those kinds that have any
   };
   using BlankId = std::pair<const RdfDocument*, std::string>;
 
@@ -61,7 +63,7 @@ class OntologyBuilder {
   void DescribeAll();
   bool IsForeign(const RdfNode& node, Place place) const;
   bool ImportsMore(const RdfDocument& document) const;
-  void PassOver(const std::string& kind, Place place);
+  void PassOver(const std::string& kind, Place place, const std::string& name = "");
   void WarnOfPassedOver() const;
   void DeclareConcept(const std::string& iri, Place place);
   void DeclareRelation(const std::string& iri, const std::string& type, Place place);
@@ -72,6 +74,7 @@ class OntologyBuilder {
 
   void Describe(const RdfDocument& document);
   bool IsPassedOver(const RdfStatement& statement) const;
+  static void RequireNoSlip(const std::string& iri, Place place);
   void DescribeOne(const RdfStatement& statement, Place place);
   void AddSuperclass(const RdfStatement& statement, Place place);
   void SetDomain(const RdfStatement& statement, Place place);

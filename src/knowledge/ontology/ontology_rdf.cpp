@@ -143,76 +143,113 @@ class TurtleScan {
   std::vector<int> prefix_lines_;
 };
 
-/// Walks over a text in XML before raptor sees it, which has no limit of depth.
+/// Walks over a text in XML before raptor sees it, which has no limit of depth, of attributes, or
+/// of what entities stand for.
 class XmlScan {
  public:
   XmlScan(std::string_view text, const std::string& source) : text_(text), source_(source) {
     if (text_.find('\0') != std::string_view::npos) FailInText(source_, 1, kNul);
     for (at_ = text_.find('<'); at_ < text_.size(); at_ = text_.find('<', at_)) Step();
+    const auto references = static_cast<std::size_t>(std::count(text_.begin(), text_.end(), '&'));
+    if (references * longest_entity_ <= kMaxExpanded) return;
+    Fail(0,
+         fmt::format("what its entities stand for may be {} bytes, at most {} are read; write it "
+                     "without them, as `xmllint --noent` does",
+                     references * longest_entity_, kMaxExpanded));
   }
 
   const std::string& root() const { return root_; }  ///< "rdf:RDF"
 
  private:
+  static constexpr std::size_t kMaxAttributes = 500;
+  static constexpr std::size_t kMaxExpanded = 16u << 20;
+
   void Step() {
-    if (Starts("<!--")) return SkipTo("-->");
-    if (Starts("<![CDATA[")) return SkipTo("]]>");
-    if (Starts("<?")) return SkipTo("?>");
-    if (Starts("<!DOCTYPE")) return SkipDocumentType();
-    const bool closes = Starts("</");
+    if (Skips("<!--", "-->") || Skips("<![CDATA[", "]]>") || Skips("<?", "?>")) return;
+    if (Starts("<!DOCTYPE")) return ReadDocumentType();
+    ReadTag();
+  }
+
+  void ReadTag() {
     const std::size_t begin = at_;
-    const std::size_t end = std::min(EndOfTag(), text_.size());
-    at_ = end;
+    const bool closes = Starts("</");
+    std::size_t num_attributes = 0;
+    for (++at_; at_ < text_.size() && text_[at_] != '>'; ++at_) {
+      if (text_[at_] == '=' && ++num_attributes > kMaxAttributes)
+        Fail(begin, fmt::format("an element has more than {} attributes", kMaxAttributes));
+      SkipQuoted();
+    }
     if (closes) {
-      --depth_;
-    } else if (end > begin + 1 && text_[end - 1] != '/') {
-      Open(begin);
+      depth_ = std::max(depth_ - 1, 0);
+    } else if (text_[at_ - 1] != '/' && ++depth_ > kMaxDepth) {
+      Fail(begin, fmt::format("elements are nested more than {} deep; give the inner ones names",
+                              kMaxDepth));
     }
     if (root_.empty() && !closes)
       root_ = text_.substr(begin + 1, text_.find_first_of(" \t\r\n/>", begin) - begin - 1);
   }
 
-  void Open(std::size_t begin) {
-    if (++depth_ <= kMaxDepth) return;
-    const auto line = 1 + std::count(text_.begin(), text_.begin() + std::ptrdiff_t(begin), '\n');
-    FailInText(
-        source_, static_cast<int>(line),
-        fmt::format("elements are nested more than {} deep; give the inner ones names", kMaxDepth));
+  /// With the entities that it declares between brackets.
+  void ReadDocumentType() {
+    bool is_within = false;
+    for (at_ += 9; at_ < text_.size(); ++at_) {
+      if (text_[at_] == '[') is_within = true;
+      if (text_[at_] == ']') is_within = false;
+      if (text_[at_] == '>' && !is_within) return;
+      if (Skips("<!--", "-->") || Skips("<?", "?>")) {
+        --at_;
+      } else if (Starts("<!ENTITY")) {
+        ReadEntity();
+      } else {
+        SkipQuoted();
+      }
+    }
+  }
+
+  void ReadEntity() {
+    const std::size_t begin = at_;
+    while (at_ < text_.size() && text_[at_] != '>') {
+      const std::size_t quote = at_;
+      SkipQuoted();
+      const std::string_view value = text_.substr(quote, at_ - quote);
+      longest_entity_ = std::max(longest_entity_, value.size());
+      // References to characters, and to those that XML itself has, stand for one letter.
+      for (std::size_t i = value.find('&'); i < value.size(); i = value.find('&', i + 1)) {
+        const std::string_view rest = value.substr(i + 1);
+        const auto is = [&](std::string_view name) { return rest.substr(0, name.size()) == name; };
+        if (is("#") || is("amp;") || is("lt;") || is("gt;") || is("quot;") || is("apos;")) continue;
+        Fail(begin, "an entity stands for others, which is not read; write their text");
+      }
+      ++at_;
+    }
+  }
+
+  /// To the end of an attribute's value, or whatever stands in quotes.
+  void SkipQuoted() {
+    const char quote = text_[at_];
+    if (quote != '"' && quote != '\'') return;
+    at_ = std::min(text_.find(quote, at_ + 1), text_.size() - 1);
   }
 
   bool Starts(std::string_view with) const { return text_.substr(at_, with.size()) == with; }
 
-  void SkipTo(std::string_view end) {
+  bool Skips(std::string_view begin, std::string_view end) {
+    if (!Starts(begin)) return false;
     const std::size_t found = text_.find(end, at_);
     at_ = found == std::string_view::npos ? text_.size() : found + end.size();
+    return true;
   }
 
-  /// With its declarations of entities, which stand in brackets.
-  void SkipDocumentType() {
-    const std::size_t end = text_.find_first_of("[>", at_);
-    SkipTo(end < text_.size() && text_[end] == '[' ? "]" : ">");
-  }
-
-  /// Where its '>' stands, which may also stand in an attribute.
-  std::size_t EndOfTag() const {
-    char quote = '\0';
-    for (std::size_t at = at_; at < text_.size(); ++at) {
-      const char c = text_[at];
-      if (quote != '\0') {
-        if (c == quote) quote = '\0';
-      } else if (c == '"' || c == '\'') {
-        quote = c;
-      } else if (c == '>') {
-        return at;
-      }
-    }
-    return std::string_view::npos;
+  [[noreturn]] void Fail(std::size_t at, const std::string& what) const {
+    const auto line = 1 + std::count(text_.begin(), text_.begin() + std::ptrdiff_t(at), '\n');
+    FailInText(source_, static_cast<int>(line), what);
   }
 
   std::string_view text_;
   const std::string& source_;
   std::size_t at_{0};
   int depth_{0};
+  std::size_t longest_entity_{0};
   std::string root_;
 };
 
@@ -404,6 +441,7 @@ RdfDocument ReadRdf(std::string_view text, const std::string& source) {
     throw base::ConfigError(fmt::format("{}: is an ontology of {} bytes, at most {} are read",
                                         source, text.size(), kMaxRdfBytes));
   }
+  base::RefuseUtf16(text, source);
   constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
   if (text.substr(0, kByteOrderMark.size()) == kByteOrderMark)
     text.remove_prefix(kByteOrderMark.size());
