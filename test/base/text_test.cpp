@@ -268,9 +268,9 @@ TEST(AllThatIsWrongTest, OneAloneIsItselfAndOfManyTheFirstAreListed) {
 }
 
 TEST(RadiansTest, ATurnRoundedUpwardsIsOneAndDegreesAreNone) {
-  for (const double angle : {0.0, 3.15, -6.2832, 6.29}) EXPECT_FALSE(WhyNoRadians(angle)) << angle;
+  for (const double angle : {0.0, 3.15, -6.2832, 6.284}) EXPECT_FALSE(WhyNoRadians(angle)) << angle;
   EXPECT_THAT(WhyNoRadians(-90.0).value(), HasSubstr("-90 degrees are -1.5708"));
-  EXPECT_TRUE(WhyNoRadians(6.3));
+  EXPECT_TRUE(WhyNoRadians(6.29));
 }
 
 }  // namespace

@@ -61,7 +61,7 @@ TEST_F(BlackboardConfigTest, WhatIsWrongIsNamed) {
   EXPECT_THAT(ErrorWith("threads: 8", "threads: 8\nmore: 1"), HasSubstr("more"));
   EXPECT_THAT(ErrorWith("~/.ros/hires/blackboard.db", "''"),
               HasSubstr("store is '', wanted a path"));
-  EXPECT_THAT(ErrorWith("ontology:                  # Turtle; concepts and relations\n"
+  EXPECT_THAT(ErrorWith("ontology:                  # Turtle or RDF/XML; concepts and relations\n"
                         "  - ontology/upper.ttl\n  - ontology/race.ttl",
                         "ontology: []"),
               HasSubstr("wanted paths of Turtle"));

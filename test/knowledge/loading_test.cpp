@@ -148,8 +148,8 @@ TEST_F(LoadingTest, AnglesOfMoreThanATurnAreRefusedAsDegrees) {
   for (const double yaw : {0.0, 3.15, -6.28, 6.2832}) EXPECT_EQ(error(yaw), "") << yaw;
   EXPECT_THAT(error(90.0), HasSubstr("is 90, more than a turn, wanted radians between -2 pi and 2 "
                                      "pi; 90 degrees are 1.5708"));
-  EXPECT_THAT(error(-180.0), HasSubstr("write -3.1416"));
-  EXPECT_THAT(error(std::int64_t{45}), HasSubstr("is 45 rad"));
+  EXPECT_THAT(error(-180.0), HasSubstr("-180 degrees are -3.1416"));
+  EXPECT_THAT(error(std::int64_t{45}), HasSubstr("is 45, more than a turn"));
 }
 
 TEST_F(LoadingTest, APoseNobodyKnowsIsNamedAndNothingGoesIn) {
