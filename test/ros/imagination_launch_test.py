@@ -106,7 +106,7 @@ class ImaginationLaunchTest(LaunchCase):
                              *(':='.join(file) for file in files.items())])
         launch.wait_for('worker=1 joined')
         question = {'action': ['--action', 'move_base_param', '--from', 'loading_bay', '--arg',
-                               'rack_1_front,rack_2_front', '--arg', 'slow'], 'rollouts': 4}
+                               'rack_1_front,rack_2_front', '--arg', 'slow'], 'rollouts': 8}
         asked = system.ask(**question).answer()
         options = [word for name, file in files.items() for word in ('--' + name, file)]
         local = system.ask('--local', *options, **question).answer()
