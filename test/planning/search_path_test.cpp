@@ -88,6 +88,8 @@ TEST_F(SearchPathTest, RepeatsAreAncestorsOfTheSameTaskInTheSameState) {
   path_.Finish({step, &bench_.Operator("!a"), 0, 0.0});
   Decompose(path_.network().FirstReady(), {bench_.Term("(t)"), bench_.Term("(!a)")});
   EXPECT_EQ(path_.NumRepeats(path_.network().FirstReady(), bench_.Term("(t)")), 2);
+  EXPECT_EQ(path_.NumRepeats(path_.network().FirstReady(), bench_.Term("(t)"), false), 1)
+      << "the other came before the step";
 }
 
 TEST_F(SearchPathTest, SituationsAreEqualOnWhateverPath) {

@@ -32,27 +32,27 @@ class Passes {
   PlanResult Run() {
     PlanResult result;
     bool one_by_one = !is_ordered_ && wanted_.which == Which::kFirst;
-    std::vector<int> bounds{0};
-    int next_bound = 1;
+    std::vector<SearchMode> modes{ModeOf(0, true)};
     bool is_recursive = false;
     for (std::uint64_t budget = kFirstBudget;; budget *= kGrowth) {
       if (one_by_one) {
-        one_by_one = !Play({0, false, budget, true}, &result);
+        one_by_one = !Play({0, true, false, budget, true}, &result);
         if (is_answered_) return result;
       }
-      const std::uint64_t share = budget / std::max<std::size_t>(bounds.size() - 1, 1);
-      for (auto bound = bounds.begin(); bound != bounds.end();) {
-        const bool is_over =
-            Play({*bound, true, *bound == 0 ? budget : share, is_ordered_}, &result);
+      const std::uint64_t share = budget / std::max<std::size_t>(modes.size() - 1, 1);
+      for (auto mode = modes.begin(); mode != modes.end();) {
+        const bool is_main = mode->most_repeats == 0 && mode->repeats_across_steps;
+        mode->budget = is_main ? budget : share;
+        const bool is_over = Play(*mode, &result);
         if (is_answered_ || (is_over && is_whole_)) return result;
         is_recursive = is_recursive || !is_whole_;
-        bound = is_over ? bounds.erase(bound) : bound + 1;
+        mode = is_over ? modes.erase(mode) : mode + 1;
       }
-      const bool is_deepest = next_bound > request_.max_depth;
-      if (is_deepest && bounds.empty()) return result;
-      if (!is_recursive || is_deepest) continue;
-      bounds.push_back(next_bound);
-      next_bound *= 2;
+      if (next_.most_repeats / 2 > request_.max_depth && modes.empty()) return result;
+      if (is_recursive && next_.most_repeats / 2 <= request_.max_depth) {
+        modes.push_back(next_);
+        next_ = ModeOf(std::max(1, 2 * next_.most_repeats), true);
+      }
     }
   }
 
@@ -72,6 +72,10 @@ class Passes {
     return !is_spent;
   }
 
+  SearchMode ModeOf(int most_repeats, bool across_steps) const {
+    return {most_repeats, across_steps, true, 0, is_ordered_};
+  }
+
   Progress Sum(Progress progress) const {
     progress.expansions += before_.expansions;
     progress.inferences += before_.inferences;
@@ -85,6 +89,9 @@ class Passes {
   PlanRequest request_;
   const bool is_ordered_;  // all tasks
   Progress before_;        ///< of the searches that are over
+  /// What is played next besides, where tasks come up below themselves: at first what lets them
+  /// once steps were taken, then more and more repeats.
+  SearchMode next_{ModeOf(0, false)};
   std::unique_ptr<Search> last_;
   bool is_answered_{false};  // enough was found, or the caller wants no more
   bool is_whole_{false};     // the last search left nothing out for its recursion

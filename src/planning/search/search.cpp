@@ -132,7 +132,8 @@ const std::vector<const CompiledMethod*>& Search::MethodsOf(Term task) {
 
 bool Search::IsGivenUp(std::uint32_t node, Term task) {
   const bool is_bounded = mode_.most_repeats < SearchMode::kAnyNumber;
-  if (!is_bounded || path_.NumRepeats(node, task) <= mode_.most_repeats) return false;
+  if (!is_bounded || path_.NumRepeats(node, task, mode_.repeats_across_steps) <= mode_.most_repeats)
+    return false;
   gave_up_recursion_ = true;
   trace_.Note(task, "", "comes up again below itself in the same state");
   return true;

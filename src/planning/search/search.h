@@ -27,6 +27,7 @@ struct SearchMode {
   /// bounded, a search ends that would never stop going down (get_to -> get_to, drive), but plans
   /// may be missed (s -> s, b).
   int most_repeats{kAnyNumber};
+  bool repeats_across_steps{true};  ///< otherwise only what comes up before a step was taken counts
   /// Whether a task may wait, once begun, while others go on of which the order says nothing.
   bool interleaves{true};
   std::uint64_t budget{SearchLimits::kAnyNumber};  ///< of expansions, about

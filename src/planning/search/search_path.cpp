@@ -83,17 +83,19 @@ std::uint64_t SearchPath::situation() const {
 }
 
 void SearchPath::NoteBegun(std::uint32_t node) {
-  if (states_.size() <= node) states_.resize(node + 1);
-  states_[node] = state_.hash();
+  if (begins_.size() <= node) begins_.resize(node + 1);
+  begins_[node] = {state_.hash(), steps_.size()};
   begun_.Insert(Mix(terms_.Hash(network_.node(node).task), state_.hash()));
 }
 
-int SearchPath::NumRepeats(std::uint32_t node, Term task) const {
+int SearchPath::NumRepeats(std::uint32_t node, Term task, bool across_steps) const {
   if (!begun_.Contains(Mix(terms_.Hash(task), state_.hash()))) return 0;
   int count = 0;
   for (std::uint32_t above = network_.node(node).parent; above != Network::kNone;
        above = network_.node(above).parent) {
-    if (network_.node(above).task == task && states_[above] == state_.hash()) ++count;
+    const bool counts = across_steps || begins_[above].num_steps == steps_.size();
+    if (counts && network_.node(above).task == task && begins_[above].state == state_.hash())
+      ++count;
   }
   return count;
 }

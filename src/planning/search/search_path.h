@@ -72,7 +72,8 @@ class SearchPath {
   /// From now on it is noted in which state each task is decomposed, for NumRepeats().
   void CountRepeats() { counts_repeats_ = true; }
   /// How many ancestors of `node` are of `task` and were decomposed in this very state.
-  int NumRepeats(std::uint32_t node, Term task) const;
+  /// @param across_steps  Also where steps have been taken since, which then led back to the state.
+  int NumRepeats(std::uint32_t node, Term task, bool across_steps = true) const;
 
   /// From now on a task that was begun is done, with all of its subtasks, before another begins.
   void FinishWhatIsBegun() { focuses_ = true; }
@@ -98,6 +99,11 @@ class SearchPath {
   std::size_t bytes() const;
 
  private:
+  /// When a node was decomposed.
+  struct Begin {
+    std::uint64_t state;  ///< by hash
+    std::size_t num_steps;
+  };
   void NoteBegun(std::uint32_t node);
 
   TermTable& terms_;
@@ -108,8 +114,8 @@ class SearchPath {
   Network network_;
   Protections protections_;
   Visited visited_;
-  Visited begun_;                      ///< tasks decomposed, each with the state
-  std::vector<std::uint64_t> states_;  ///< by node: in which it was decomposed, by hash
+  Visited begun_;              ///< tasks decomposed, each with the state
+  std::vector<Begin> begins_;  ///< by node
   bool counts_repeats_{false};
   bool focuses_{false};
   std::uint32_t focus_{0};  ///< only tasks from this node on can come next
