@@ -703,6 +703,20 @@ TEST(SchedulerTest, WorkerThatOnlyFailsIsSetAsideAndCondemnsNoRollout) {
   EXPECT_EQ(scheduler.result()->num_unplayable, 0);
 }
 
+TEST(SchedulerTest, WorkerThatFailsNowAndThenGoesOn) {
+  const QuietLog quiet;
+  Scheduler scheduler({}, 2, 0.0);
+  auto work = Only<Assign>(scheduler.Handle(WorkerJoined{1}, 0.0));
+  for (int round = 0; round < 4; ++round) {
+    ASSERT_EQ(work.size(), 1u) << "after " << round << " failures";
+    const Assign& one = work[0];
+    scheduler.Handle(
+        RolloutFinished{1, one.assignment, one.alternative, one.first_index, Success()}, 1.0);
+    work = Only<Assign>(scheduler.Handle(AssignmentFailed{1, one.assignment, "tired", false}, 1.0));
+  }
+  EXPECT_THAT(scheduler.worker_problems(), testing::IsEmpty());
+}
+
 TEST(SchedulerTest, MissingResultsAreAskedForAgain) {
   Scheduler scheduler({}, 2, 0.0);
   const auto work = Only<Assign>(scheduler.Handle(WorkerJoined{1}, 0.0));

@@ -61,6 +61,8 @@ TEST(CompareStepTest, ADurationBeyondAllIsASurpriseOnlyWhereEnoughWereImagined) 
             StepVerdict::kTooFewDurations);
   EXPECT_EQ(CompareStep(Step(ActionFate::kSucceeded, 0.5), Imagined(40, 0), kSurprise).verdict,
             StepVerdict::kFaster);
+  EXPECT_EQ(CompareStep(Step(ActionFate::kSucceeded, 0.5), Imagined(39, 0), kSurprise).verdict,
+            StepVerdict::kTooFewDurations);
 }
 
 TEST(CompareStepTest, WhereAlmostAllFailedAsItDidNoDurationIsAskedFor) {
