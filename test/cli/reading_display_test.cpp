@@ -38,5 +38,15 @@ TEST(ReadingDisplayTest, LongWorkTellsWhatIsLeft) {
   EXPECT_EQ(out.str(), "mapping drive.log: 25 %, 12 s left\n");
 }
 
+TEST(ReadingDisplayTest, WorkThatGoesOnFromAShareHasThePaceOfWhatIsNew) {
+  std::ostringstream out;
+  double now = 10.0;
+  const auto show = ShowReadingOn(&out, false, [&] { return now; });
+  show("series of drives", 0.5);  // was done before
+  now = 15.0;
+  show("series of drives", 0.6);  // a tenth in 5 s, four more to come
+  EXPECT_EQ(out.str(), "series of drives: 60 %, 20 s left\n");
+}
+
 }  // namespace
 }  // namespace hires::cli::reading_display_test
