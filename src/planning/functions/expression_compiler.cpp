@@ -456,8 +456,7 @@ std::string UnknownFunctionText(const std::string& name, const Functions& functi
   }
   return fmt::format(
       "function '{}' is unknown, and none has a name like it; functions that a JSHOP2 domain has "
-      "in "
-      "Java are not read: C++ code adds them through Functions::Add",
+      "in Java are not read: C++ code adds them through Functions::Add",
       excerpt);
 }
 

@@ -28,11 +28,10 @@ const Datum& TaskWithin(const HddlScope& scope, const Datum& datum, int index, I
 }
 
 /// @param atoms  of the needs: those for the action's parameters.
-/// @param task  of the action; its name may have the `!`.
+/// @param task  of the action.
 void AddNeeds(const HddlVocabulary& vocabulary, const Datum& task,
               std::vector<Datum> HddlVocabulary::Needs::*atoms, std::vector<Formula>* conditions) {
-  const std::string& name = task.items[0].text;
-  const auto found = vocabulary.needs.find(name.substr(name.front() == '!' ? 1 : 0));
+  const auto found = vocabulary.needs.find(task.items[0].text);
   if (found == vocabulary.needs.end()) return;
   const HddlVocabulary::Needs& needs = found->second;
   std::map<std::string, Datum> values;
@@ -52,8 +51,8 @@ void ReadTasks(const Datum& datum, HddlScope* scope, HddlNetwork* result, Ids* i
         CheckTerm(scope->spot, item.task, "task", scope->vocabulary->tasks, scope->variables,
                   scope->vocabulary);
     if (signature.kind == "action") {
-      AddNeeds(*scope->vocabulary, item.task, &HddlVocabulary::Needs::fixed, &result->conditions);
       item.task.items[0].text = "!" + signature.name;
+      AddNeeds(*scope->vocabulary, item.task, &HddlVocabulary::Needs::fixed, &result->conditions);
     }
     result->network.items.push_back(std::move(item));
   }

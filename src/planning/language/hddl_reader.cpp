@@ -217,7 +217,7 @@ class DomainReader {
           continue;
         (changed.MayHave(predicate) ? needs.changing : needs.fixed).push_back(goal.term);
       }
-      vocabulary_.needs[op.head.items[0].text.substr(1)] = std::move(needs);
+      vocabulary_.needs[op.head.items[0].text] = std::move(needs);
     }
   }
 
@@ -242,8 +242,9 @@ class DomainReader {
     branch.precondition.condition = ArrangeConjunction(conditions, parameters.type_atoms, bound);
     if (!network.needs_of_first.empty()) {
       AddUnlessKnown(network.needs_of_first, &conditions);
-      branch.with_first_step =
-          Precondition{{}, {}, {}, ArrangeConjunction(conditions, parameters.type_atoms, bound)};
+      branch.with_first_step = branch.precondition;
+      branch.with_first_step->condition =
+          ArrangeConjunction(conditions, parameters.type_atoms, bound);
     }
     branch.subtasks = std::move(network.network);
     method.branches.push_back(std::move(branch));

@@ -47,7 +47,7 @@ struct HddlVocabulary {
   Signatures predicates;
   Signatures functions;
   Signatures tasks;                    ///< compound ones and actions
-  std::map<std::string, Needs> needs;  ///< of actions, by name
+  std::map<std::string, Needs> needs;  ///< of actions, by name with its `!`
   std::vector<OpenObject> open_objects;
   bool has_costs{false};        ///< (total-cost) is declared
   bool has_all_objects{false};  ///< no object may be left open any more

@@ -36,19 +36,19 @@ void Network::Detach(int list, std::uint32_t node) {
   nodes_[links.next].ready[list].previous = links.previous;
 }
 
-std::uint64_t Network::Share(std::uint32_t node) const {
-  const Node& ready = nodes_[node];
-  return Mix(Mix(terms_->Hash(ready.task), ready.immediate), ready.rest);
+/// Of a task and what follows it.
+std::uint64_t Network::TaskHash(const Node& task, std::uint64_t rest) const {
+  return Mix(Mix(terms_->Hash(task.task), task.immediate), rest);
 }
 
 void Network::Count(std::uint32_t node) {
-  hash_ += Share(node);
-  content_ += ContentOf(node, nodes_[node].content);
+  hash_ += TaskHash(nodes_[node], nodes_[node].rest);
+  content_ += TaskHash(nodes_[node], nodes_[node].content);
 }
 
 void Network::Discount(std::uint32_t node) {
-  hash_ -= Share(node);
-  content_ -= ContentOf(node, nodes_[node].content);
+  hash_ -= TaskHash(nodes_[node], nodes_[node].rest);
+  content_ -= TaskHash(nodes_[node], nodes_[node].content);
 }
 
 void Network::MakeReady(std::uint32_t node) {
@@ -203,7 +203,7 @@ std::uint32_t Network::FirstBelowOpen(std::uint32_t node) const {
 std::uint64_t Network::ContentFrom(std::uint32_t node) const {
   std::uint64_t content = 0;
   for (std::uint32_t ready = FirstReady(); ready != 0; ready = NextReady(ready)) {
-    if (ready >= node) content += ContentOf(ready, nodes_[ready].content);
+    if (ready >= node) content += TaskHash(nodes_[ready], nodes_[ready].content);
   }
   return content;
 }
@@ -211,7 +211,7 @@ std::uint64_t Network::ContentFrom(std::uint32_t node) const {
 /// Of a task, or of a network with all of its tasks and their order, and of what follows.
 std::uint64_t Network::ContentOf(std::uint32_t node, std::uint64_t rest) const {
   const Node& item = nodes_[node];
-  if (item.first_child == kNone) return Mix(Mix(terms_->Hash(item.task), item.immediate), rest);
+  if (item.first_child == kNone) return TaskHash(item, rest);
   std::uint64_t hash = Mix(item.subtasks->items.size(), rest);
   for (std::uint32_t i = 0; i < item.subtasks->items.size(); ++i) {
     hash = Mix(hash, ContentOf(item.first_child + i, item.subtasks->items[i].num_before));
@@ -222,7 +222,7 @@ std::uint64_t Network::ContentOf(std::uint32_t node, std::uint64_t rest) const {
 
 std::uint64_t Network::HashOf(std::uint32_t node, std::uint64_t rest) const {
   const Node& item = nodes_[node];
-  if (item.first_child == kNone) return Mix(Mix(terms_->Hash(item.task), item.immediate), rest);
+  if (item.first_child == kNone) return TaskHash(item, rest);
   std::uint64_t hash = Mix(node, rest);
   for (std::uint32_t i = 0; i < item.subtasks->items.size(); ++i) {
     hash = Mix(hash, HashOf(item.first_child + i, i));

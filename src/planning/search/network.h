@@ -102,7 +102,7 @@ class Network {
   void Append(int list, std::uint32_t node);
   void Detach(int list, std::uint32_t node);
   void Reattach(int list, std::uint32_t node);
-  std::uint64_t Share(std::uint32_t node) const;
+  std::uint64_t TaskHash(const Node& task, std::uint64_t rest) const;
   void Count(std::uint32_t node);
   void Discount(std::uint32_t node);
 

@@ -48,8 +48,9 @@ class Passes {
         is_recursive = is_recursive || !is_whole_;
         mode = is_over ? modes.erase(mode) : mode + 1;
       }
-      if (next_.most_repeats / 2 > request_.max_depth && modes.empty()) return result;
-      if (is_recursive && next_.most_repeats / 2 <= request_.max_depth) {
+      const bool is_deepest = next_.most_repeats / 2 > request_.max_depth;
+      if (is_deepest && modes.empty()) return result;
+      if (is_recursive && !is_deepest) {
         modes.push_back(next_);
         next_ = ModeOf(std::max(1, 2 * next_.most_repeats), true);
       }

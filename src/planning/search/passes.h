@@ -11,7 +11,8 @@ namespace hires::planning {
 /// order, whose interleavings nobody can go through. So where one plan is wanted, tasks are done
 /// one after the other at first; the same question is asked with interleaving now and then, with
 /// budgets that grow. What was left out for its recursion is gone into where nothing else leads to
-/// a plan, or more plans are wanted: once below itself, twice, four times, ...
+/// a plan, or more plans are wanted: where steps were taken in between, then once below itself,
+/// twice, four times, ...
 PlanResult FindHddlPlans(const Program& program, TermTable* terms, const PlanRequest& request);
 
 }  // namespace hires::planning
