@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "hires/base/text.h"
 
 namespace hires::base {
@@ -41,6 +43,13 @@ std::vector<std::string> FirstLines(std::vector<std::string> lines) {
   lines.resize(kMostListed);
   lines.push_back(fmt::format("and {} more", count - kMostListed));
   return lines;
+}
+
+std::string FirstNames(const std::vector<std::string>& names, std::size_t at_most) {
+  const std::size_t shown = std::min(names.size(), at_most);
+  const std::string text =
+      Join({names.begin(), names.begin() + static_cast<std::ptrdiff_t>(shown)}, ", ");
+  return shown == names.size() ? text : fmt::format("{} and {} more", text, names.size() - shown);
 }
 
 std::string AllThatIsWrong(const std::string& where, const std::vector<std::string>& problems) {

@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "base/files/plain_xml.h"
+#include "hires/base/short_text.h"
 #include "hires/base/text.h"
 #include "hires/geometry/segment.h"
 #include "hires/robot/link_bounds.h"
@@ -26,12 +27,6 @@ using IsGiven = std::function<bool(const std::string&)>;
 
 constexpr std::size_t kMostNames = 6;
 constexpr double kSeenBeyond = 0.05;  // [m] that what is only seen may reach beyond what collides
-
-std::string Few(const std::vector<std::string>& names) {
-  if (names.size() <= kMostNames) return base::Join(names, ", ");
-  const std::vector<std::string> first(names.begin(), names.begin() + kMostNames);
-  return fmt::format("{} and {} more", base::Join(first, ", "), names.size() - kMostNames);
-}
 
 std::string FootprintText(const Robot& robot, const Bounds& bounds) {
   geometry::Aabb hull;
@@ -163,7 +158,7 @@ std::string SeenText(const Robot& robot, const Bounds& bounds, const std::string
   return fmt::format(
       "shapes: seen, but with no <collision>, so that nothing touches them, are {}; {}; add "
       "<collision> shapes to the URDF, or a `footprint` in a profile that has room for them",
-      Few(names), farthest);
+      base::FirstNames(names, kMostNames), farthest);
 }
 
 bool IsLaserType(const std::string& type) {
@@ -188,7 +183,7 @@ std::string LaserText(const Robot& robot, const std::string& urdf_xml) {
   return fmt::format(
       "laser_link: none is named, so it drives by the map alone; by sensor or name a laser is at "
       "{}: write `laser_link: {}` in a profile",
-      Few(links), links.front());
+      base::FirstNames(links, kMostNames), links.front());
 }
 
 std::string NumbersText(const MotionSet& set) {
@@ -219,7 +214,8 @@ std::string OtherTraysText(const Robot& robot, const Bounds& bounds) {
     if (is_tray && name != robot.profile.tray_link && area(i) >= least) others.push_back(name);
   }
   if (others.empty()) return "";
-  return fmt::format("; {} may be meant as well: `tray_link: {}`", Few(others), others.front());
+  return fmt::format("; {} may be meant as well: `tray_link: {}`",
+                     base::FirstNames(others, kMostNames), others.front());
 }
 
 std::string TrayText(const Robot& robot, const Bounds& bounds, const IsGiven& is_given) {
@@ -319,14 +315,14 @@ std::vector<std::string> AssumptionsOf(const Robot& robot, const IsGiven& is_giv
     texts.push_back(
         fmt::format("left out of the footprint, as they lie more than {:g} m over the "
                     "floor: {}",
-                    kFootprintTop, Few(left_out)));
+                    kFootprintTop, base::FirstNames(left_out, kMostNames)));
   }
   const std::vector<std::string> at_zero = JointsAtZero(robot, bounds);
   if (!at_zero.empty()) {
     texts.push_back(fmt::format(
         "joints: at 0, or at the limit next to it, stand {}; write `joints: {{{}: ..}}` "
         "in a profile",
-        Few(at_zero), at_zero.front()));
+        base::FirstNames(at_zero, kMostNames), at_zero.front()));
   }
   if (robot.base_height > 0.0) {
     texts.push_back(fmt::format(

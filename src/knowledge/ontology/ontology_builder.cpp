@@ -24,6 +24,7 @@ using NodeKind = RdfNode::Kind;
 
 // Of concepts, and of relations. The is-a matrix and the closures grow with the square.
 constexpr std::size_t kMaxTerms = 5000;
+constexpr std::size_t kMostNamed = 5;  // of names that are passed over
 constexpr const char* kTooMany =
     "more than 5000 concepts, or as many relations; keep what the robot does not need out of it";
 
@@ -41,18 +42,6 @@ std::string ReadableNode(const RdfNode& node) {
 /// What a node would be called if it were declared.
 std::string NameForMessage(const RdfNode& node) {
   return node.kind == NodeKind::kIri ? LastPart(node.value).substr(0, 80) : ReadableNode(node);
-}
-
-/// "A, B, C and 4 more".
-std::string FirstNames(const std::set<std::string>& names) {
-  constexpr std::size_t kMostNamed = 5;
-  std::vector<std::string> first;
-  for (const std::string& name : names) {
-    if (first.size() < kMostNamed) first.push_back(name);
-  }
-  const std::string text = base::Join(first, ", ");
-  if (names.size() <= kMostNamed) return text;
-  return fmt::format("{} and {} more", text, names.size() - kMostNamed);
 }
 
 }  // namespace
@@ -214,9 +203,12 @@ void OntologyBuilder::WarnOfPassedOver() const {
     std::vector<std::string> kinds;
     for (const auto& [kind, count] : passed.kinds) {
       const auto named = passed.names.find(kind);
-      kinds.push_back(named == passed.names.end()
-                          ? fmt::format("{} ({})", kind, count)
-                          : fmt::format("{} ({}: {})", kind, count, FirstNames(named->second)));
+      kinds.push_back(
+          named == passed.names.end()
+              ? fmt::format("{} ({})", kind, count)
+              : fmt::format(
+                    "{} ({}: {})", kind, count,
+                    base::FirstNames({named->second.begin(), named->second.end()}, kMostNamed)));
     }
     base::Log(base::LogLevel::kWarn,
               fmt::format("{}: passed over, as it is beyond what is read of OWL: {}; the first in "
@@ -246,8 +238,7 @@ void OntologyBuilder::DeclareRelation(const std::string& iri, const std::string&
   if (const auto same = concepts_.find(name); same != concepts_.end()) {
     FailOnSameName(same->second, term);
   }
-  const auto [known, is_new] =
-      relations_.emplace(name, RelationTerm{term, {}, false, {}, {}, false, false});
+  const auto [known, is_new] = relations_.emplace(name, RelationTerm{term});
   if (known->second.iri != iri) FailOnSameName(known->second, term);
   names_[iri] = name;
   if (is_new && relations_.size() == kMaxTerms + 1) Fail(place, kTooMany);
@@ -285,10 +276,10 @@ OntologyBuilder::Term OntologyBuilder::NewTerm(const std::string& iri, Place pla
 }
 
 std::string OntologyBuilder::QualifiedName(const std::string& iri, Place place) const {
-  const std::size_t end = EndOfNamespace(iri);
+  const std::string name_space = NamespaceOf(iri);
   // From the end: the empty prefix, which says least, comes last.
   for (auto prefix = prefixes_.rbegin(); prefix != prefixes_.rend(); ++prefix) {
-    if (prefix->second == iri.substr(0, end)) return prefix->first + ":" + iri.substr(end);
+    if (prefix->second == name_space) return prefix->first + ":" + LastPart(iri);
   }
   Fail(place, fmt::format("<{}> has no prefix", iri));  // InventPrefixes() leaves none without
 }

@@ -40,10 +40,10 @@ class OntologyBuilder {
     std::vector<Superclass> above;
   };
   struct RelationTerm : Term {
-    std::optional<bool> is_link;  // ObjectProperty, or DatatypeProperty
+    std::optional<bool> is_link{};  // ObjectProperty, or DatatypeProperty
     bool functional{false};
-    std::optional<std::vector<std::string>> domain;
-    std::optional<std::string> range;
+    std::optional<std::vector<std::string>> domain{};
+    std::optional<std::string> range{};
     bool has_domain{false};  // one of which something is read or not
     bool is_dropped{false};  // its values are of no type that is read
   };

@@ -5,13 +5,13 @@
 
 #include <algorithm>
 #include <cctype>
-#include <map>
 #include <memory>
 #include <mutex>
 #include <optional>
 
 #include "hires/base/error.h"
 #include "hires/base/text.h"
+#include "knowledge/ontology/ontology_words.h"
 
 namespace hires::knowledge {
 namespace {
@@ -88,7 +88,7 @@ class TurtleScan {
     while (count-- > 0 && at_ < text_.size()) Advance();
   }
 
-  bool Starts(std::string_view with) const { return text_.substr(at_, with.size()) == with; }
+  bool Starts(std::string_view with) const { return knowledge::Starts(text_.substr(at_), with); }
 
   /// `@prefix a: <b> .` or, as in SPARQL, `PREFIX a: <b>`; `base` likewise.
   bool Declares(std::string_view word) const {
@@ -216,7 +216,7 @@ class XmlScan {
       // References to characters, and to those that XML itself has, stand for one letter.
       for (std::size_t i = value.find('&'); i < value.size(); i = value.find('&', i + 1)) {
         const std::string_view rest = value.substr(i + 1);
-        const auto is = [&](std::string_view name) { return rest.substr(0, name.size()) == name; };
+        const auto is = [&](std::string_view name) { return knowledge::Starts(rest, name); };
         if (is("#") || is("amp;") || is("lt;") || is("gt;") || is("quot;") || is("apos;")) continue;
         Fail(begin, "an entity stands for others, which is not read; write their text");
       }
@@ -231,7 +231,7 @@ class XmlScan {
     at_ = std::min(text_.find(quote, at_ + 1), text_.size() - 1);
   }
 
-  bool Starts(std::string_view with) const { return text_.substr(at_, with.size()) == with; }
+  bool Starts(std::string_view with) const { return knowledge::Starts(text_.substr(at_), with); }
 
   bool Skips(std::string_view begin, std::string_view end) {
     if (!Starts(begin)) return false;
@@ -263,9 +263,8 @@ class XmlScan {
 
 /// An IRI in Turtle begins as a tag in XML does, but has no blanks.
 bool IsXml(std::string_view text) {
-  const auto starts = [&](std::string_view with) { return text.substr(0, with.size()) == with; };
-  if (starts("<?xml") || starts("<!")) return true;
-  if (!starts("<")) return false;
+  if (Starts(text, "<?xml") || Starts(text, "<!")) return true;
+  if (!Starts(text, "<")) return false;
   const std::string_view tag = text.substr(0, text.find('>'));
   return tag.find_first_of(" \t\r\n") != std::string_view::npos || tag == "<rdf:RDF";
 }
@@ -275,10 +274,11 @@ Notation NotationOf(std::string_view text, const std::string& source) {
   const std::size_t begin = text.find_first_not_of(" \t\r\n");
   if (begin == std::string_view::npos) return Notation::kTurtle;
   text.remove_prefix(begin);
-  const auto starts = [&](std::string_view with) { return text.substr(0, with.size()) == with; };
-  if (starts("Prefix(") || starts("Ontology(")) FailOnNotation(source, "OWL in functional syntax");
-  if (starts("Prefix:") || starts("Ontology:")) FailOnNotation(source, "OWL in Manchester syntax");
-  if (starts("{")) FailOnNotation(source, "JSON");
+  if (Starts(text, "Prefix(") || Starts(text, "Ontology("))
+    FailOnNotation(source, "OWL in functional syntax");
+  if (Starts(text, "Prefix:") || Starts(text, "Ontology:"))
+    FailOnNotation(source, "OWL in Manchester syntax");
+  if (Starts(text, "{")) FailOnNotation(source, "JSON");
   if (!IsXml(text)) return Notation::kTurtle;
   const std::string root = XmlScan(text, source).root();
   const std::string name = root.substr(root.find(':') + 1);  // find() + 1 is 0 without a prefix
@@ -375,13 +375,8 @@ std::string InOurWords(const std::string& message, Notation notation) {
   const bool is_turtle = notation == Notation::kTurtle;
   if (prefix.empty())
     return fmt::format("this is no {}: {}", is_turtle ? "Turtle" : "RDF/XML", message);
-  static const std::map<std::string, std::string> kKnown{
-      {"rdf", "http://www.w3.org/1999/02/22-rdf-syntax-ns#"},
-      {"rdfs", "http://www.w3.org/2000/01/rdf-schema#"},
-      {"owl", "http://www.w3.org/2002/07/owl#"},
-      {"xsd", "http://www.w3.org/2001/XMLSchema#"}};
-  const auto known = kKnown.find(prefix);
-  const std::string iri = known == kKnown.end() ? "..." : known->second;
+  const auto known = KnownPrefixes().find(prefix);
+  const std::string iri = known == KnownPrefixes().end() ? "..." : known->second;
   return fmt::format("prefix '{}:' is not declared; add {}", prefix,
                      is_turtle ? fmt::format("@prefix {}: <{}> .", prefix, iri)
                                : fmt::format("xmlns:{}=\"{}\" to the root", prefix, iri));
@@ -442,9 +437,6 @@ RdfDocument ReadRdf(std::string_view text, const std::string& source) {
                                         source, text.size(), kMaxRdfBytes));
   }
   base::RefuseUtf16(text, source);
-  constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
-  if (text.substr(0, kByteOrderMark.size()) == kByteOrderMark)
-    text.remove_prefix(kByteOrderMark.size());
   RdfDocument document;
   document.source = source;
   Parse parse{&document, NotationOf(text, source), nullptr};

@@ -7,7 +7,6 @@
 #include <cctype>
 #include <set>
 #include <string_view>
-#include <utility>
 #include <vector>
 
 #include "hires/base/spelling.h"
@@ -35,21 +34,31 @@ constexpr const char* kWords =
     "rdfs:comment rdfs:domain rdfs:isDefinedBy rdfs:label rdfs:member rdfs:range "
     "rdfs:seeAlso rdfs:subClassOf rdfs:subPropertyOf";
 
-bool Starts(const std::string& text, const std::string& with) {
-  return text.compare(0, with.size(), with) == 0;
+std::size_t EndOfNamespace(const std::string& iri) {
+  const std::size_t last = iri.find_last_of("#/");
+  const std::size_t end = last != std::string::npos ? last : iri.rfind(':');
+  return end == std::string::npos ? 0 : end + 1;
 }
 
 }  // namespace
+
+const std::map<std::string, std::string>& KnownPrefixes() {
+  static const std::map<std::string, std::string> kKnown{
+      {"rdf", kRdf}, {"rdfs", kRdfs}, {"owl", kOwl}, {"xsd", kXsd}};
+  return kKnown;
+}
+
+bool Starts(std::string_view text, std::string_view with) {
+  return text.substr(0, with.size()) == with;
+}
 
 bool IsOfOwl(const std::string& iri) {
   return Starts(iri, kOwl) || Starts(iri, kRdfs) || Starts(iri, kRdf);
 }
 
 std::string Readable(const std::string& iri) {
-  const std::array<std::pair<const char*, const std::string*>, 4> known{
-      {{"rdf:", &kRdf}, {"rdfs:", &kRdfs}, {"owl:", &kOwl}, {"xsd:", &kXsd}}};
-  for (const auto& [prefix, iri_of_prefix] : known) {
-    if (Starts(iri, *iri_of_prefix)) return prefix + iri.substr(iri_of_prefix->size());
+  for (const auto& [prefix, known] : KnownPrefixes()) {
+    if (Starts(iri, known)) return prefix + ":" + iri.substr(known.size());
   }
   return "<" + iri + ">";
 }
@@ -101,12 +110,6 @@ bool IsName(const std::string& text) {
   const auto fits = [](unsigned char c) { return std::isalnum(c) != 0 || c == '_' || c == '-'; };
   return !text.empty() && text.size() <= 200 && std::isalpha(static_cast<unsigned char>(text[0])) &&
          std::all_of(text.begin(), text.end(), fits);
-}
-
-std::size_t EndOfNamespace(const std::string& iri) {
-  const std::size_t last = iri.find_last_of("#/");
-  const std::size_t end = last != std::string::npos ? last : iri.rfind(':');
-  return end == std::string::npos ? 0 : end + 1;
 }
 
 std::string NamespaceOf(const std::string& iri) { return iri.substr(0, EndOfNamespace(iri)); }

@@ -1,8 +1,9 @@
 #pragma once
 
-#include <cstddef>
+#include <map>
 #include <optional>
 #include <string>
+#include <string_view>
 
 namespace hires::knowledge {
 
@@ -14,6 +15,9 @@ inline const std::string kOwl = "http://www.w3.org/2002/07/owl#";
 inline const std::string kXsd = "http://www.w3.org/2001/XMLSchema#";
 inline const std::string kThing = kOwl + "Thing";
 
+/// "rdf", "rdfs", "owl" and "xsd", each with its IRI.
+const std::map<std::string, std::string>& KnownPrefixes();
+bool Starts(std::string_view text, std::string_view with);
 bool IsOfOwl(const std::string& iri);  ///< or of RDFS, or RDF
 /// "rdf:type" of an IRI that everybody knows, else the IRI itself, for messages.
 std::string Readable(const std::string& iri);
@@ -34,7 +38,6 @@ bool IsValueType(const std::string& iri);  ///< of one that is read
 bool IsPlain(const std::string& iri);
 /// Names stand in YAML and in SPARQL, unquoted where possible.
 bool IsName(const std::string& text);
-std::size_t EndOfNamespace(const std::string& iri);
 std::string NamespaceOf(const std::string& iri);
 std::string LastPart(const std::string& iri);
 

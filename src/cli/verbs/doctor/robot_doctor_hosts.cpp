@@ -4,24 +4,19 @@
 
 #include <algorithm>
 
+#include "hires/base/short_text.h"
 #include "hires/base/text.h"
 
 namespace hires::cli {
 namespace {
 
+using hires::base::FirstNames;
 using hires::base::Join;
 using hires::relay::IsLoopback;
 
 constexpr double kMostSkew = 0.05;       // [s] between two computers
 constexpr std::size_t kMostNamed = 4;    // nodes in one finding; the others are counted
 constexpr std::size_t kFewMessages = 5;  // fewer say nothing about a clock
-
-/// "/a, /b and 3 more".
-std::string Some(const std::vector<std::string>& names) {
-  const std::size_t shown = std::min(names.size(), kMostNamed);
-  const std::string text = Join({names.begin(), names.begin() + static_cast<long>(shown)}, ", ");
-  return shown == names.size() ? text : fmt::format("{} and {} more", text, names.size() - shown);
-}
 
 std::string HostOf(const std::string& uri) {
   const auto endpoint = hires::relay::ParseUri(uri);
@@ -73,7 +68,7 @@ RobotFindings JudgeLoopback(const RobotView& view) {
         {FindingLevel::kFailed, "loopback", "address " + host,
          fmt::format(
              "is what {} told the master; on any other computer it means that computer itself",
-             Some(names)),
+             FirstNames(names, kMostNamed)),
          "start them with ROS_IP set to their computer's address (in /etc/ros or the robot's "
          "setup.bash), and without ROS_HOSTNAME=localhost"});
   }
@@ -95,7 +90,8 @@ RobotFindings JudgeLookups(const RobotView& view) {
   for (const auto& [host, nodes] : NodesBy(Reach::kUnresolvable, view)) {
     findings.push_back(
         {FindingLevel::kFailed, "unresolvable", "host " + host,
-         fmt::format("cannot be looked up here, so {} cannot be reached", Some(nodes)),
+         fmt::format("cannot be looked up here, so {} cannot be reached",
+                     FirstNames(nodes, kMostNamed)),
          fmt::format("add a line 'ADDRESS {}' to /etc/hosts of this computer, or start these nodes "
                      "with ROS_IP=ADDRESS instead of ROS_HOSTNAME",
                      host)});
@@ -124,18 +120,18 @@ RobotFindings JudgeReach(const RobotView& view) {
   RobotFindings findings;
   for (const auto& [host, nodes] : NodesBy(Reach::kSilent, view)) {
     findings.push_back({FindingLevel::kFailed, "node_unreachable", "host " + host,
-                        "does not answer for " + Some(WithPorts(nodes, view)),
+                        "does not answer for " + FirstNames(WithPorts(nodes, view), kMostNamed),
                         FirewallRemedy(host, view)});
   }
   for (const auto& [host, nodes] : NodesBy(Reach::kRefused, view)) {
     findings.push_back({FindingLevel::kWarning, "node_gone", "host " + host,
-                        "refuses connections to " + Some(WithPorts(nodes, view)),
+                        "refuses connections to " + FirstNames(WithPorts(nodes, view), kMostNamed),
                         "they have ended without saying so (rosnode cleanup), or a firewall there "
                         "rejects"});
   }
   for (const auto& [host, nodes] : NodesBy(Reach::kBadUri, view)) {
     findings.push_back({FindingLevel::kFailed, "node_unreachable", "master",
-                        fmt::format("knows no usable address of {}", Some(nodes)),
+                        fmt::format("knows no usable address of {}", FirstNames(nodes, kMostNamed)),
                         "restart these nodes"});
   }
   return findings;
