@@ -19,7 +19,6 @@ constexpr int kFewFacing = 20;            // points that tell how well a scan fi
 constexpr double kParallel = 0.3;         // [rad] between faces that count as parallel
 constexpr double kRobust = 3.0;           // sd from which on a distance counts less
 constexpr double kMatchConverged = 1e-4;  // [m], [rad]
-constexpr double kCentreBonus = 0.05;     // of nearness, over the window
 constexpr std::size_t kMostSearchPoints = 150;
 
 /// A point on the piece of wall that is nearest to it.
@@ -98,54 +97,12 @@ Equations EquationsAt(const SurfaceMap& map, const SurfacePoints& points, const 
   return equations;
 }
 
-SurfacePoints EveryFew(const SurfacePoints& points) {
+std::vector<Eigen::Vector2d> EveryFew(const SurfacePoints& points) {
   const std::size_t step = 1 + points.size() / kMostSearchPoints;
-  SurfacePoints few;
-  for (std::size_t i = 0; i < points.size(); i += step) few.push_back(points[i]);
+  std::vector<Eigen::Vector2d> few;
+  for (std::size_t i = 0; i < points.size(); i += step) few.push_back(points[i].p);
   return few;
 }
-
-/// Poses of a grid around a guess, compared by how near the points lie to the map.
-class GridSearch {
- public:
-  GridSearch(const SurfaceMap& map, const SurfacePoints& points) : map_(map), points_(points) {}
-
-  Pose2 Around(const Pose2& guess, const SearchWindow& window, double step, double yaw_step) {
-    Pose2 best = guess;
-    double best_score = -1.0;
-    const int n = static_cast<int>(std::ceil(window.reach / step));
-    const int n_yaw = static_cast<int>(std::ceil(window.yaw / yaw_step));
-    std::vector<Eigen::Vector2d> turned(points_.size());
-    for (int k = -n_yaw; k <= n_yaw; ++k) {
-      const double yaw = guess.yaw + k * yaw_step;
-      const Pose2 turn{guess.x, guess.y, yaw};
-      for (std::size_t i = 0; i < points_.size(); ++i) turned[i] = turn * points_[i].p;
-      for (int row = -n; row <= n; ++row) {
-        for (int column = -n; column <= n; ++column) {
-          const Eigen::Vector2d shift(column * step, row * step);
-          const double off = (shift.squaredNorm() / (window.reach * window.reach) +
-                              std::pow(k * yaw_step / window.yaw, 2)) /
-                             3.0;
-          const double score = Score(turned, shift) * (1.0 - kCentreBonus * off);
-          if (score <= best_score) continue;
-          best_score = score;
-          best = {guess.x + shift.x(), guess.y + shift.y(), geometry::WrapToPi(yaw)};
-        }
-      }
-    }
-    return best;
-  }
-
- private:
-  double Score(const std::vector<Eigen::Vector2d>& turned, const Eigen::Vector2d& shift) const {
-    int sum = 0;
-    for (const Eigen::Vector2d& p : turned) sum += map_.Nearness(p + shift);
-    return sum;
-  }
-
-  const SurfaceMap& map_;
-  const SurfacePoints& points_;
-};
 
 }  // namespace
 
@@ -196,10 +153,9 @@ ScanMatch RefineMatch(const SurfaceMap& map, const SurfacePoints& points, const 
 
 Pose2 SearchMatch(const SurfaceMap& map, const SurfacePoints& points, const Pose2& guess,
                   const SearchWindow& window) {
-  const SurfacePoints few = EveryFew(points);
-  GridSearch search(map, few);
-  const Pose2 coarse = search.Around(guess, window, 0.1, 0.02);
-  return search.Around(coarse, {0.1, 0.02}, 0.05, 0.01);
+  const std::vector<Eigen::Vector2d> few = EveryFew(points);
+  const Pose2 coarse = SearchGrid(map.nearness(), few, guess, window, {2, 0.02});
+  return SearchGrid(map.nearness(), few, coarse, {0.1, 0.02}, {1, 0.01});
 }
 
 }  // namespace hires::mapping

@@ -2,6 +2,7 @@
 
 #include <optional>
 
+#include "mapping/grid_search.h"
 #include "mapping/surface_map.h"
 
 namespace hires::mapping {
@@ -43,15 +44,8 @@ ScanMatch RefineMatch(const SurfaceMap& map, const SurfacePoints& points,
                       const geometry::Pose2& guess, const std::optional<PosePrior>& prior,
                       double surface_sd);
 
-/// What is tried around a guess.
-struct SearchWindow {
-  double reach{0.2};  ///< [m] to either side, along both axes
-  double yaw{0.1};    ///< [rad] to either side
-};
-
-/// The pose in the window at which the points lie nearest to what the map shows: all poses of a
-/// grid of 0.1 m, then finer. A pose at the window's edge is as good as that in its middle only if
-/// its points lie nearer by 5 %.
+/// The pose in the window at which the points lie nearest to what the map shows: of a grid of
+/// 0.1 m, then of a finer one about it (SearchGrid).
 geometry::Pose2 SearchMatch(const SurfaceMap& map, const SurfacePoints& points,
                             const geometry::Pose2& guess, const SearchWindow& window);
 

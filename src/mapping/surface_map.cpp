@@ -1,38 +1,21 @@
 #include "mapping/surface_map.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 
 namespace hires::mapping {
 namespace {
 
-constexpr double kPieceCell = 0.1;    // [m]
-constexpr double kFacesAlike = 0.7;   // cosine between normals
-constexpr double kNearnessSd = 0.06;  // [m]
-constexpr int kNearnessCells = 3;     // to either side
-constexpr double kBorder = 0.5;       // [m] around all points
+constexpr double kPieceCell = 0.1;   // [m]
+constexpr double kFacesAlike = 0.7;  // cosine between normals
+constexpr double kBorder = 0.5;      // [m] around all points
 
 /// The quarter of the circle that a normal points to: two sides of a thin wall, and two walls of a
 /// corner, are kept apart.
 int QuarterOf(const Eigen::Vector2d& n) {
   if (std::abs(n.x()) >= std::abs(n.y())) return n.x() > 0.0 ? 0 : 2;
   return n.y() > 0.0 ? 1 : 3;
-}
-
-using NearnessStamp = std::array<std::uint8_t, (2 * kNearnessCells + 1) * (2 * kNearnessCells + 1)>;
-
-NearnessStamp MakeStamp() {
-  NearnessStamp stamp{};
-  std::size_t i = 0;
-  for (int dy = -kNearnessCells; dy <= kNearnessCells; ++dy) {
-    for (int dx = -kNearnessCells; dx <= kNearnessCells; ++dx, ++i) {
-      const double d = SurfaceMap::kNearnessCell * std::hypot(dx, dy) / kNearnessSd;
-      stamp[i] = static_cast<std::uint8_t>(std::lround(255.0 * std::exp(-0.5 * d * d)));
-    }
-  }
-  return stamp;
 }
 
 }  // namespace
@@ -50,17 +33,15 @@ SurfaceMap::SurfaceMap(const std::vector<PlacedPoints>& scans) {
   if (upper.x() < lower.x()) return;
   lower_ = lower - kBorder;
   const Eigen::Array2d size = upper - lower + 2.0 * kBorder;
-  width_ = static_cast<int>(std::ceil(size.x() / kNearnessCell));
-  height_ = static_cast<int>(std::ceil(size.y() / kNearnessCell));
+  nearness_ = Nearness(lower_, size);
   piece_width_ = static_cast<int>(std::ceil(size.x() / kPieceCell));
   piece_height_ = static_cast<int>(std::ceil(size.y() / kPieceCell));
-  nearness_.assign(static_cast<std::size_t>(width_) * height_, 0);
   piece_of_.assign(std::size_t{4} * piece_width_ * piece_height_, -1);
   for (const PlacedPoints& scan : scans) {
     const geometry::Pose2 turn{0.0, 0.0, scan.X_MB.yaw};
     for (const SurfacePoint& point : *scan.points) {
       const Eigen::Vector2d p = scan.X_MB * point.p;
-      Stamp(p);
+      nearness_.Stamp(p);
       if (point.has_normal()) AddPiece(p, turn * point.n);
     }
   }
@@ -82,21 +63,6 @@ void SurfaceMap::AddPiece(const Eigen::Vector2d& p, const Eigen::Vector2d& n) {
   pieces_[index].p += p;
   pieces_[index].n += n;
   ++pieces_[index].num_points;
-}
-
-void SurfaceMap::Stamp(const Eigen::Vector2d& p) {
-  static const NearnessStamp kStamp = MakeStamp();
-  const Eigen::Vector2d at = (p - lower_) / kNearnessCell;
-  const int column = static_cast<int>(at.x()), row = static_cast<int>(at.y());
-  std::uint8_t& middle = nearness_[static_cast<std::size_t>(row) * width_ + column];
-  if (middle == 255) return;  // stamped before
-  std::size_t i = 0;
-  for (int dy = -kNearnessCells; dy <= kNearnessCells; ++dy) {
-    for (int dx = -kNearnessCells; dx <= kNearnessCells; ++dx, ++i) {
-      std::uint8_t& cell = nearness_[static_cast<std::size_t>(row + dy) * width_ + column + dx];
-      cell = std::max(cell, kStamp[i]);
-    }
-  }
 }
 
 const SurfaceMap::Piece* SurfaceMap::Nearest(const Eigen::Vector2d& p,

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "hires/geometry/pose.h"
+#include "mapping/nearness.h"
 #include "mapping/scan_points.h"
 
 namespace hires::mapping {
@@ -29,23 +30,13 @@ class SurfaceMap {
   /// The nearest piece that faces as `n` within the cells around; nullptr if there is none.
   const Piece* Nearest(const Eigen::Vector2d& p, const Eigen::Vector2d& n) const;
 
-  /// 255 on a measured point, less within 0.15 m of one, 0 elsewhere.
-  int Nearness(const Eigen::Vector2d& p) const {
-    const Eigen::Vector2d at = (p - lower_) / kNearnessCell;
-    const int column = static_cast<int>(std::floor(at.x()));
-    const int row = static_cast<int>(std::floor(at.y()));
-    const bool is_within = column >= 0 && row >= 0 && column < width_ && row < height_;
-    return is_within ? nearness_[static_cast<std::size_t>(row) * width_ + column] : 0;
-  }
-  static constexpr double kNearnessCell = 0.05;  ///< [m]
+  const Nearness& nearness() const { return nearness_; }
 
  private:
   void AddPiece(const Eigen::Vector2d& p, const Eigen::Vector2d& n);
-  void Stamp(const Eigen::Vector2d& p);
 
   Eigen::Vector2d lower_{Eigen::Vector2d::Zero()};
-  int width_{0}, height_{0};  // cells of nearness
-  std::vector<std::uint8_t> nearness_;
+  Nearness nearness_;
   int piece_width_{0}, piece_height_{0};  // cells of pieces
   std::vector<std::int32_t> piece_of_;    // by cell and quarter that it faces; -1: none
   std::vector<Piece> pieces_;
