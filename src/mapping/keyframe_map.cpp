@@ -19,7 +19,7 @@ constexpr double kBetterFit = 0.1;    // by which the wider search has to win
 constexpr int kChainHalf = 10;        // keyframes to either side of a place seen before
 constexpr int kLoopEvery = 2;         // keyframes
 constexpr double kLarge = 0.5;        // [m] of correction, which then needs a witness
-constexpr double kToldSd = 0.03;      // [m] along it
+constexpr double kToldSd = 0.03;      // [m] of a match in a direction that walls tell of
 constexpr double kSettles = 0.3;      // [m] by which refining may move what was searched
 constexpr double kSameHeading = 1.0;  // [rad]
 constexpr double kDrift = 0.05;       // [m / m] of a map that is not tied together
@@ -57,6 +57,26 @@ bool IsTold(const Pose2& X_before, const ScanMatch& match) {
   const Eigen::Matrix3d covariance =
       (match.information + 1e-6 * Eigen::Matrix3d::Identity()).inverse();
   return along.dot(covariance.topLeftCorner<2, 2>() * along) <= kToldSd * kToldSd;
+}
+
+/// A match that keeps the pose from before in the direction that walls hardly tell of, as along a
+/// corridor, and says nothing of it: the best of all poses along it is one that noise chose.
+/// @return nothing if the scan does not fit there.
+std::optional<ScanMatch> KeptWhereUntold(const SurfaceMap& map, const SurfacePoints& few,
+                                         const Pose2& X_before, const ScanMatch& match,
+                                         const MapperParams& params) {
+  const LeastKnown least = LeastKnownOf(match);
+  if (least.sd <= kToldSd) return match;
+  const Eigen::Vector2d& u = least.direction;
+  const Eigen::Vector2d shift = match.X_MB.position() - X_before.position();
+  const Eigen::Vector2d kept = match.X_MB.position() - u * u.dot(shift);
+  ScanMatch out =
+      RefineMatch(map, few, {kept.x(), kept.y(), match.X_MB.yaw}, std::nullopt, params.surface_sd);
+  if (out.fit < params.min_fit) return std::nullopt;
+  Eigen::Matrix3d told = Eigen::Matrix3d::Identity();
+  told.topLeftCorner<2, 2>() -= u * u.transpose();
+  out.information = told * out.information * told;
+  return out;
 }
 
 }  // namespace
@@ -129,7 +149,7 @@ void KeyframeMap::CloseLoop() {
     if (is_large && !(IsTold(X_before, *match) && IsWitnessed(X_before, match->X_MB))) continue;
     const PoseGraph::Edge edge = EdgeOf(*place, k, graph_.pose(*place), *match, kUnknownPlace);
     if (!graph_.CloseLoop(edge, is_large)) continue;
-    if (WorstPositionSd(*match) > kTies) return;  // along a corridor the map may still be off
+    if (LeastKnownOf(*match).sd > kTies) return;  // along a corridor the map may still be off
     ++num_loops_;
     breaks_.erase(std::upper_bound(breaks_.begin(), breaks_.end(), *place), breaks_.end());
     way_at_loop_ = keyframes_[k]->way;
@@ -185,7 +205,7 @@ std::optional<ScanMatch> KeyframeMap::MatchWithPlace(int place) const {
   const ScanMatch match = RefineMatch(map, few, found, std::nullopt, params_.surface_sd);
   const bool is_good =
       match.fit >= params_.min_fit && DistanceBetween(match.X_MB, found) < kSettles;
-  return is_good ? std::make_optional(match) : std::nullopt;
+  return is_good ? KeptWhereUntold(map, few, graph_.pose(k), match, params_) : std::nullopt;
 }
 
 /// Poses of neither are changed: who lies beside what was seen before is found so, too.

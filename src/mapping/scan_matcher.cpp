@@ -106,13 +106,13 @@ std::vector<Eigen::Vector2d> EveryFew(const SurfacePoints& points) {
 
 }  // namespace
 
-double WorstPositionSd(const ScanMatch& match) {
+LeastKnown LeastKnownOf(const ScanMatch& match) {
   // By far less than any wall tells: a singular matrix has an inverse then.
   const Eigen::Matrix3d damped = match.information + 1e-6 * Eigen::Matrix3d::Identity();
   const Eigen::Matrix2d covariance = damped.inverse().topLeftCorner<2, 2>();
   Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> solver;
   solver.computeDirect(covariance);
-  return std::sqrt(std::max(solver.eigenvalues()[1], 0.0));
+  return {solver.eigenvectors().col(1), std::sqrt(std::max(solver.eigenvalues()[1], 0.0))};
 }
 
 bool SeesMuch(const SurfacePoints& points) {

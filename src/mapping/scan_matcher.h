@@ -25,8 +25,12 @@ struct ScanMatch {
   bool is_searched{false};  ///< beyond what odometry allows
 };
 
-/// [m] sd of the position in the direction of which least is known.
-double WorstPositionSd(const ScanMatch& match);
+/// The direction in the map in which least is known of the position.
+struct LeastKnown {
+  Eigen::Vector2d direction;
+  double sd;  ///< [m]
+};
+LeastKnown LeastKnownOf(const ScanMatch& match);
 
 /// Whether at least 20 points have normals.
 bool SeesMuch(const SurfacePoints& points);
