@@ -29,13 +29,17 @@ void OdometryUnits::Take(double x, double y, double theta, double time) {
   const double length = move.position().norm();
   if (length > kLeastMove) {
     speeds_.push_back(length / passed);
-    num_too_fast_ += robot::IsOdometryJump(move, passed, robot::kFastestDrive, robot::kFastestTurn);
+    num_too_fast_ += robot::IsOdometryJump(move, time_of_moves_.For(passed), robot::kFastestDrive,
+                                           robot::kFastestTurn);
   }
+  time_of_moves_.Take(passed, length / robot::kFastestDrive);
   // Not as a pose, which would wrap it; what looks like a leap by one turn is none.
   double turn = std::abs(theta - last->theta);
   if (std::abs(turn - kOneCircle) < kNearCircle) turn = std::abs(turn - kOneCircle);
   turned_ += turn;
-  if (turn <= robot::kFastestTurn * passed + kSlackOfTurn) return;
+  const bool is_slow = turn <= robot::kFastestTurn * time_of_turns_.For(passed) + kSlackOfTurn;
+  time_of_turns_.Take(passed, turn / robot::kFastestTurn);
+  if (is_slow) return;
   turned_too_fast_ += turn;
   ++num_too_fast_turns_;
 }

@@ -4,6 +4,8 @@
 #include <string>
 #include <vector>
 
+#include "hires/robot/lent_time.h"
+
 namespace hires::localisation {
 
 /// Whether poses of odometry, as a file has them, may be in another unit than metres and radians:
@@ -20,6 +22,7 @@ class OdometryUnits {
     double x, y, theta, time;
   };
   std::optional<Reading> last_;
+  robot::LentTime time_of_moves_, time_of_turns_;
   std::vector<double> speeds_;                 // [unit/s] of moves
   int num_too_fast_{0};                        // of those
   double turned_{0.0}, turned_too_fast_{0.0};  // in all

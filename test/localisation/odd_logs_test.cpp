@@ -178,6 +178,19 @@ TEST_F(OddLogsTest, OdometryInAnotherUnitIsAskedAbout) {
   }
 }
 
+/// A turn whose lines are written at its end, and stamped then, is fast by its stamps alone.
+TEST_F(OddLogsTest, BurstsAreNoOtherUnit) {
+  for (int seed = 1; seed <= Rounds(12); ++seed) {
+    std::vector<Moment> drive = DrawDrive(base::Rng(seed));
+    for (std::size_t first = 25; first + 14 < drive.size(); first += 40) {
+      for (std::size_t i = first + 1; i < first + 14; ++i)
+        drive[i].time = drive[first + 14].time - 0.001 * static_cast<double>(first + 14 - i);
+    }
+    Read(TextOf(LinesOf(drive, {})));
+    EXPECT_EQ(warnings_, "") << seed;
+  }
+}
+
 TEST_F(OddLogsTest, TimesInAnotherUnitAreAskedAbout) {
   const std::vector<Moment> drive = DrawDrive(base::Rng(1));
   for (const auto& [factor, unit] :
