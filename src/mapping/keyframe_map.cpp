@@ -24,7 +24,6 @@ constexpr double kSettles = 0.3;      // [m] by which refining may move what was
 constexpr double kSameHeading = 1.0;  // [rad]
 constexpr double kDrift = 0.05;       // [m / m] of a map that is not tied together
 constexpr double kYawDrift = 0.004;   // [rad / m]
-constexpr double kTies = 0.1;         // [m] sd of a place seen before that ties the map together
 constexpr double kReturned = 2.0;     // [m] from a place seen before
 constexpr int kReturnedHalf = 5;      // keyframes to either side of it
 constexpr std::size_t kMostReturns = 30;
@@ -149,7 +148,7 @@ void KeyframeMap::CloseLoop() {
     if (is_large && !(IsTold(X_before, *match) && IsWitnessed(X_before, match->X_MB))) continue;
     const PoseGraph::Edge edge = EdgeOf(*place, k, graph_.pose(*place), *match, kUnknownPlace);
     if (!graph_.CloseLoop(edge, is_large)) continue;
-    if (LeastKnownOf(*match).sd > kTies) return;  // along a corridor the map may still be off
+    if (LeastKnownOf(*match).sd > kToldSd) return;  // along a corridor the map may still be off
     ++num_loops_;
     breaks_.erase(std::upper_bound(breaks_.begin(), breaks_.end(), *place), breaks_.end());
     way_at_loop_ = keyframes_[k]->way;

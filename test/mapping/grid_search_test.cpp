@@ -69,7 +69,7 @@ Pose2 BestOfAll(const Nearness& nearness, const Points& points, const Pose2& gue
 }
 
 TEST(GridSearchTest, BoundsLeaveOutNothingThatIsBetter) {
-  const int rounds = hires::test_support::Rounds(400);
+  const int rounds = hires::test_support::Rounds(100);
   for (int round = 0; round < rounds; ++round) {
     SCOPED_TRACE(round);
     base::Rng rng(static_cast<std::uint64_t>(round));

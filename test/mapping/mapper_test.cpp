@@ -95,7 +95,7 @@ TEST(MapperTest, LongCorridorsAreNeitherBentNorShortened) {
         DriveThrough(world, test_support::CourseRoundABlock(), params, base::Rng(seed));
     const MapResult result = MakeMap(drive.log);
     EXPECT_LE(TrajectoryRms(result.trajectory, drive.truth), 0.3) << seed;
-    EXPECT_GT(result.num_loops, 10) << seed;
+    EXPECT_GE(result.num_loops, 3) << seed << ": corners tie it, walls alone do not";
     EXPECT_GT(TrajectoryRms(test_support::OdometryAt(drive.truth, drive.log), drive.truth), 10.0)
         << "else nothing is shown";
   }
