@@ -29,18 +29,20 @@ int NearestToZero(int first, int last) { return std::max({0, first, -last}); }
 class Search {
  public:
   Search(const Nearness& nearness, const std::vector<Eigen::Vector2d>& points, const Pose2& guess,
-         const SearchWindow& window, const SearchStep& step);
-  Pose2 Best();
+         const SearchWindow& window, const SearchStep& step, const std::optional<Disc>& left_out);
+  GridMatch Best();
 
  private:
   Square SquareAt(int yaw, int row, int column, int level) const;
   void Look(const Square& square, int level);
   double PenaltyOf(const Square& square, int edge) const;
   Pose2 PoseOf(const Square& square) const;
+  bool IsLeftOut(const Pose2& pose) const;
 
   const Pose2& guess_;
   const SearchWindow& window_;
   const SearchStep& step_;
+  const std::optional<Disc>& left_out_;
   int most_, most_yaw_;                             // steps to either side
   std::vector<Nearness> levels_;                    // most of squares of 2^level steps
   std::vector<std::vector<Eigen::Array2i>> cells_;  // of the points, for each yaw
@@ -48,10 +50,12 @@ class Search {
 };
 
 Search::Search(const Nearness& nearness, const std::vector<Eigen::Vector2d>& points,
-               const Pose2& guess, const SearchWindow& window, const SearchStep& step)
+               const Pose2& guess, const SearchWindow& window, const SearchStep& step,
+               const std::optional<Disc>& left_out)
     : guess_(guess),
       window_(window),
       step_(step),
+      left_out_(left_out),
       most_(static_cast<int>(std::ceil(window.reach / (step.cells * Nearness::kCell)))),
       most_yaw_(static_cast<int>(std::ceil(window.yaw / step.yaw))),
       levels_{nearness} {
@@ -89,10 +93,14 @@ Square Search::SquareAt(int yaw, int row, int column, int level) const {
   return square;
 }
 
+bool Search::IsLeftOut(const Pose2& pose) const {
+  return left_out_ && (pose.position() - left_out_->centre).norm() < left_out_->radius;
+}
+
 void Search::Look(const Square& square, int level) {
   if (!IsBetter(square, best_)) return;
   if (level == 0) {
-    best_ = square;
+    if (!IsLeftOut(PoseOf(square))) best_ = square;
     return;
   }
   const int half = 1 << (level - 1);
@@ -107,7 +115,7 @@ void Search::Look(const Square& square, int level) {
   for (const Square& quarter : quarters) Look(quarter, level - 1);
 }
 
-Pose2 Search::Best() {
+GridMatch Search::Best() {
   best_.bound = -1.0;
   const int level = static_cast<int>(levels_.size()) - 1;
   std::vector<Square> squares;
@@ -119,14 +127,15 @@ Pose2 Search::Best() {
   }
   std::sort(squares.begin(), squares.end(), IsBetter);
   for (const Square& square : squares) Look(square, level);
-  return PoseOf(best_);
+  return {PoseOf(best_), best_.bound};
 }
 
 }  // namespace
 
-Pose2 SearchGrid(const Nearness& nearness, const std::vector<Eigen::Vector2d>& points,
-                 const Pose2& guess, const SearchWindow& window, const SearchStep& step) {
-  return Search(nearness, points, guess, window, step).Best();
+GridMatch SearchGrid(const Nearness& nearness, const std::vector<Eigen::Vector2d>& points,
+                     const Pose2& guess, const SearchWindow& window, const SearchStep& step,
+                     const std::optional<Disc>& left_out) {
+  return Search(nearness, points, guess, window, step, left_out).Best();
 }
 
 }  // namespace hires::mapping

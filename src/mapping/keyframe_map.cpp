@@ -14,18 +14,26 @@ namespace {
 
 using geometry::Pose2;
 
-constexpr double kLostFit = 0.2;      // with less, a scan fits nothing
-constexpr double kBetterFit = 0.1;    // by which the wider search has to win
-constexpr int kChainHalf = 10;        // keyframes to either side of a place seen before
-constexpr int kLoopEvery = 2;         // keyframes
-constexpr double kLarge = 0.5;        // [m] of correction, which then needs a witness
-constexpr double kToldSd = 0.03;      // [m] of a match in a direction that walls tell of
-constexpr double kSettles = 0.3;      // [m] by which refining may move what was searched
-constexpr double kSameHeading = 1.0;  // [rad]
-constexpr double kDrift = 0.05;       // [m / m] of a map that is not tied together
-constexpr double kYawDrift = 0.004;   // [rad / m]
-constexpr double kReturned = 2.0;     // [m] from a place seen before
-constexpr int kReturnedHalf = 5;      // keyframes to either side of it
+constexpr double kLostFit = 0.2;        // with less, a scan fits nothing
+constexpr double kBetterFit = 0.1;      // by which the wider search has to win
+constexpr int kChainHalf = 10;          // keyframes to either side of a place seen before
+constexpr int kLoopEvery = 2;           // keyframes
+constexpr double kLarge = 0.5;          // [m] of correction, which then needs a witness
+constexpr double kToldSd = 0.03;        // [m] of a match in a direction that walls tell of
+constexpr double kSettles = 0.3;        // [m] by which refining may move what was searched
+constexpr double kWalks = 0.6;          // [m] likewise, of a scan and the latest keyframes
+constexpr double kTurnsAway = 0.3;      // [rad]
+constexpr double kAtBorder = 0.15;      // [m] from a window's border
+constexpr int kFewSeen = 10;            // points that tell whether a scan fits where it is
+constexpr double kFitsHere = 0.6;       // of those ...
+constexpr double kFitsBetter = 0.25;    // ... by which another place has to fit better
+constexpr double kSameHeading = 1.0;    // [rad]
+constexpr double kDrift = 0.05;         // [m / m] of a map that is not tied together
+constexpr double kYawDrift = 0.004;     // [rad / m]
+constexpr double kFarthestOff = 12.0;   // [m] that a place is looked for
+constexpr double kMostTurnedOff = 0.8;  // [rad]
+constexpr double kReturned = 2.0;       // [m] from a place seen before
+constexpr int kReturnedHalf = 5;        // keyframes to either side of it
 constexpr std::size_t kMostReturns = 30;
 const Eigen::Vector3d kUnknownStep(1.0, 1.0, 0.3), kUnknownPlace(30.0, 30.0, 3.0);
 const Eigen::Vector3d kEdgeFloor(0.01, 0.01, 0.003);  // [m], [m], [rad] sd of the best match
@@ -58,15 +66,24 @@ bool IsTold(const Pose2& X_before, const ScanMatch& match) {
   return along.dot(covariance.topLeftCorner<2, 2>() * along) <= kToldSd * kToldSd;
 }
 
+/// What fits best at the border of a window would fit better beyond it.
+bool IsAtBorder(const Pose2& X_MB, const Pose2& guess, const SearchWindow& window) {
+  return (X_MB.position() - guess.position()).cwiseAbs().maxCoeff() > window.reach - kAtBorder;
+}
+
 /// A match that keeps the pose from before in the direction that walls hardly tell of, as along a
-/// corridor, and says nothing of it: the best of all poses along it is one that noise chose.
+/// corridor, or in which a rival lies, and says nothing of it: the best of all poses along it is
+/// one that noise chose.
 /// @return nothing if the scan does not fit there.
 std::optional<ScanMatch> KeptWhereUntold(const SurfaceMap& map, const SurfacePoints& few,
                                          const Pose2& X_before, const ScanMatch& match,
+                                         const std::optional<Pose2>& X_MRival,
                                          const MapperParams& params) {
   const LeastKnown least = LeastKnownOf(match);
-  if (least.sd <= kToldSd) return match;
-  const Eigen::Vector2d& u = least.direction;
+  if (least.sd <= kToldSd && !X_MRival) return match;
+  const Eigen::Vector2d u = least.sd > kToldSd
+                                ? least.direction
+                                : (X_MRival->position() - match.X_MB.position()).normalized();
   const Eigen::Vector2d shift = match.X_MB.position() - X_before.position();
   const Eigen::Vector2d kept = match.X_MB.position() - u * u.dot(shift);
   ScanMatch out =
@@ -84,16 +101,23 @@ std::optional<ScanMatch> KeyframeMap::Match(const SurfacePoints& few,
                                             const PosePrior& prior) const {
   if (!local_ || few.empty()) return std::nullopt;
   ScanMatch match = RefineMatch(*local_, few, prior.X_MB, prior, params_.surface_sd);
-  if (match.fit < kGoodFit) {
+  if (match.fit < kGoodFit && TellsWhere(few)) {
     const SearchWindow window{0.3 + prior.position_sd, 0.15 + prior.yaw_sd};
-    const Pose2 found = SearchMatch(*local_, few, prior.X_MB, window);
+    const Pose2 found = SearchMatch(*local_, few, prior.X_MB, window).X_MB;
     const ScanMatch other = RefineMatch(*local_, few, found, std::nullopt, params_.surface_sd);
-    if (other.fit > match.fit + kBetterFit) {
+    const bool settles =
+        DistanceBetween(other.X_MB, found) < kWalks && AngleBetween(other.X_MB, found) < kTurnsAway;
+    if (settles && other.fit > match.fit + kBetterFit) {
       match = other;
       match.is_searched = true;
     }
   }
   return match.fit < kLostFit ? std::nullopt : std::make_optional(match);
+}
+
+/// Few points, as of a scan that somebody stands before, fit in many places.
+bool KeyframeMap::TellsWhere(const SurfacePoints& few) const {
+  return SeesMuch(few) && 2 * NumFacing(few) >= NumFacing(keyframes_.back()->few);
 }
 
 bool KeyframeMap::IsDue(const Pose2& X_MB) const {
@@ -191,20 +215,38 @@ SurfaceMap KeyframeMap::MapAround(int place, int half, int k) const {
   return SurfaceMap(Placed(place - half, last));
 }
 
+/// Whether a match asks for a large shift of what lies right: what was seen around a place ends
+/// where nobody had looked, and a scan that is pushed into it fits with more of its points than one
+/// that lies half beside it. After a break nothing is known to lie right.
+bool KeyframeMap::FitsWhereItIs(const SurfaceMap& map, int place, const ScanMatch& match) const {
+  const Pose2& X_MB = graph_.pose(size() - 1);
+  const bool is_broken = !breaks_.empty() && breaks_.back() > place;
+  if (is_broken || DistanceBetween(match.X_MB, X_MB) < kLarge) return false;
+  const SurfacePoints& few = keyframes_.back()->few;
+  const Pose2 near = SearchMatch(map, few, X_MB, {0.3, 0.1}).X_MB;
+  const ScanMatch stays = RefineMatch(map, few, near, std::nullopt, params_.surface_sd);
+  const FitWhereSeen here = FitWhereSeenAt(map, few, stays.X_MB);
+  const FitWhereSeen there = FitWhereSeenAt(map, few, match.X_MB);
+  return here.num_points >= kFewSeen && here.fit > kFitsHere && here.fit > there.fit - kFitsBetter;
+}
+
 /// The last keyframe by the scans around a place, which it may be off by the more the longer the
 /// map was not tied together.
 std::optional<ScanMatch> KeyframeMap::MatchWithPlace(int place) const {
   const int k = size() - 1;
   const double unsure = UntiedWay(place);
-  const SearchWindow window{std::min(0.3 + kDrift * unsure, 4.0),
-                            std::min(0.1 + kYawDrift * unsure, 0.4)};
+  const SearchWindow window{std::min(0.3 + kDrift * unsure, kFarthestOff),
+                            std::min(0.1 + kYawDrift * unsure, kMostTurnedOff)};
   const SurfaceMap map = MapAround(place, kChainHalf, k);
   const SurfacePoints& few = keyframes_[k]->few;
-  const Pose2 found = SearchMatch(map, few, graph_.pose(k), window);
-  const ScanMatch match = RefineMatch(map, few, found, std::nullopt, params_.surface_sd);
-  const bool is_good =
-      match.fit >= params_.min_fit && DistanceBetween(match.X_MB, found) < kSettles;
-  return is_good ? KeptWhereUntold(map, few, graph_.pose(k), match, params_) : std::nullopt;
+  const FoundPose found = SearchMatch(map, few, graph_.pose(k), window);
+  const ScanMatch match = RefineMatch(map, few, found.X_MB, std::nullopt, params_.surface_sd);
+  if (match.fit < params_.min_fit || DistanceBetween(match.X_MB, found.X_MB) >= kSettles)
+    return std::nullopt;
+  const auto kept = KeptWhereUntold(map, few, graph_.pose(k), match, found.X_MRival, params_);
+  if (!kept || IsAtBorder(kept->X_MB, graph_.pose(k), window) || FitsWhereItIs(map, place, *kept))
+    return std::nullopt;
+  return kept;
 }
 
 /// Poses of neither are changed: who lies beside what was seen before is found so, too.

@@ -62,6 +62,8 @@ class KeyframeMap {
   std::optional<int> PlaceSeenBefore(bool same_heading) const;
   SurfaceMap MapAround(int place, int half, int k) const;
   std::optional<ScanMatch> MatchWithPlace(int place) const;
+  bool FitsWhereItIs(const SurfaceMap& map, int place, const ScanMatch& match) const;
+  bool TellsWhere(const SurfacePoints& few) const;
   MapReturns CountReturns() const;
   bool IsWitnessed(const geometry::Pose2& X_before, const geometry::Pose2& X_after);
 

@@ -19,6 +19,9 @@ constexpr int kFewFacing = 20;            // points that tell how well a scan fi
 constexpr double kParallel = 0.3;         // [rad] between faces that count as parallel
 constexpr double kRobust = 3.0;           // sd from which on a distance counts less
 constexpr double kMatchConverged = 1e-4;  // [m], [rad]
+constexpr double kRivalBeside = 0.5;      // [m] from which on another pose is a rival ...
+constexpr double kAsNear = 0.8;           // ... whose points lie so near, as a share of the best
+constexpr double kFarSearch = 1.5;        // [m] to either side, where rivals are asked for
 constexpr std::size_t kMostSearchPoints = 150;
 
 /// A point on the piece of wall that is nearest to it.
@@ -76,6 +79,11 @@ double DistanceOf(const Pair& pair, const Pose2& X_MB) {
   return pair.piece->n.dot(pair.r + X_MB.position() - pair.piece->p);
 }
 
+std::ptrdiff_t NumFitting(const std::vector<Pair>& pairs, const Pose2& X_MB) {
+  return std::count_if(pairs.begin(), pairs.end(),
+                       [&](const Pair& pair) { return std::abs(DistanceOf(pair, X_MB)) < kFits; });
+}
+
 Equations EquationsAt(const SurfaceMap& map, const SurfacePoints& points, const Pose2& X_MB,
                       double surface_sd) {
   Equations equations;
@@ -115,19 +123,28 @@ LeastKnown LeastKnownOf(const ScanMatch& match) {
   return {solver.eigenvectors().col(1), std::sqrt(std::max(solver.eigenvalues()[1], 0.0))};
 }
 
-bool SeesMuch(const SurfacePoints& points) {
-  return std::count_if(points.begin(), points.end(),
-                       [](const SurfacePoint& point) { return point.has_normal(); }) >= kFewFacing;
+int NumFacing(const SurfacePoints& points) {
+  return static_cast<int>(std::count_if(
+      points.begin(), points.end(), [](const SurfacePoint& point) { return point.has_normal(); }));
+}
+
+bool SeesMuch(const SurfacePoints& points) { return NumFacing(points) >= kFewFacing; }
+
+FitWhereSeen FitWhereSeenAt(const SurfaceMap& map, const SurfacePoints& points, const Pose2& X_MB) {
+  SurfacePoints seen;
+  for (const SurfacePoint& point : points)
+    if (point.has_normal() && map.HasNear(X_MB * point.p)) seen.push_back(point);
+  FitWhereSeen out;
+  const std::vector<Pair> pairs = PairsAt(map, seen, X_MB, &out.num_points);
+  if (out.num_points > 0) out.fit = static_cast<double>(NumFitting(pairs, X_MB)) / out.num_points;
+  return out;
 }
 
 std::optional<double> FitAt(const SurfaceMap& map, const SurfacePoints& points, const Pose2& X_MB) {
   if (!SeesMuch(points)) return std::nullopt;
   int num_facing = 0;
   const std::vector<Pair> pairs = PairsAt(map, points, X_MB, &num_facing);
-  const auto num_fitting = std::count_if(pairs.begin(), pairs.end(), [&](const Pair& pair) {
-    return std::abs(DistanceOf(pair, X_MB)) < kFits;
-  });
-  return static_cast<double>(num_fitting) / num_facing;
+  return static_cast<double>(NumFitting(pairs, X_MB)) / num_facing;
 }
 
 ScanMatch RefineMatch(const SurfaceMap& map, const SurfacePoints& points, const Pose2& guess,
@@ -151,11 +168,18 @@ ScanMatch RefineMatch(const SurfaceMap& map, const SurfacePoints& points, const 
   return match;
 }
 
-Pose2 SearchMatch(const SurfaceMap& map, const SurfacePoints& points, const Pose2& guess,
-                  const SearchWindow& window) {
+FoundPose SearchMatch(const SurfaceMap& map, const SurfacePoints& points, const Pose2& guess,
+                      const SearchWindow& window) {
   const std::vector<Eigen::Vector2d> few = EveryFew(points);
-  const Pose2 coarse = SearchGrid(map.nearness(), few, guess, window, {2, 0.02});
-  return SearchGrid(map.nearness(), few, coarse, {0.1, 0.02}, {1, 0.01});
+  const SearchStep step{2, 0.02};
+  const GridMatch coarse = SearchGrid(map.nearness(), few, guess, window, step);
+  FoundPose found{SearchGrid(map.nearness(), few, coarse.X_MB, {0.1, 0.02}, {1, 0.01}).X_MB,
+                  std::nullopt};
+  if (window.reach < kFarSearch) return found;
+  const GridMatch other = SearchGrid(map.nearness(), few, guess, window, step,
+                                     Disc{coarse.X_MB.position(), kRivalBeside});
+  if (other.score >= kAsNear * coarse.score) found.X_MRival = other.X_MB;
+  return found;
 }
 
 }  // namespace hires::mapping

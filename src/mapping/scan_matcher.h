@@ -32,12 +32,22 @@ struct LeastKnown {
 };
 LeastKnown LeastKnownOf(const ScanMatch& match);
 
+int NumFacing(const SurfacePoints& points);  ///< points with normals
+
 /// Whether at least 20 points have normals.
 bool SeesMuch(const SurfacePoints& points);
 
 /// Share of the points with normals that lie within 0.1 m on a piece of wall; nothing where few
 /// have one.
 std::optional<double> FitAt(const SurfaceMap& map, const SurfacePoints& points,
+                            const geometry::Pose2& X_MB);
+
+/// How a scan fits where anything was seen before.
+struct FitWhereSeen {
+  int num_points{0};  ///< with normals, within 0.5 m of anything that the map shows
+  double fit{0.0};    ///< share of those that lie within 0.1 m on a piece of wall
+};
+FitWhereSeen FitWhereSeenAt(const SurfaceMap& map, const SurfacePoints& points,
                             const geometry::Pose2& X_MB);
 
 /// From `guess`, by Gauss-Newton on the distances of points to pieces of wall. Normals have noise,
@@ -48,9 +58,18 @@ ScanMatch RefineMatch(const SurfaceMap& map, const SurfacePoints& points,
                       const geometry::Pose2& guess, const std::optional<PosePrior>& prior,
                       double surface_sd);
 
+/// What was found by SearchMatch.
+struct FoundPose {
+  geometry::Pose2 X_MB;
+  /// Where else, 0.5 m and more beside it, the points lie at least eight tenths as near to what the
+  /// map shows, best of all: alike rooms, or what walls do not tell of. Not asked for in windows of
+  /// less than 1.5 m to either side.
+  std::optional<geometry::Pose2> X_MRival;
+};
+
 /// The pose in the window at which the points lie nearest to what the map shows: of a grid of
 /// 0.1 m, then of a finer one about it (SearchGrid).
-geometry::Pose2 SearchMatch(const SurfaceMap& map, const SurfacePoints& points,
-                            const geometry::Pose2& guess, const SearchWindow& window);
+FoundPose SearchMatch(const SurfaceMap& map, const SurfacePoints& points,
+                      const geometry::Pose2& guess, const SearchWindow& window);
 
 }  // namespace hires::mapping

@@ -9,6 +9,7 @@ namespace {
 
 constexpr double kPieceCell = 0.1;   // [m]
 constexpr double kFacesAlike = 0.7;  // cosine between normals
+constexpr int kNear = 5;             // cells to either side
 constexpr double kBorder = 0.5;      // [m] around all points
 
 /// The quarter of the circle that a normal points to: two sides of a thin wall, and two walls of a
@@ -86,6 +87,20 @@ const SurfaceMap::Piece* SurfaceMap::Nearest(const Eigen::Vector2d& p,
     }
   }
   return nearest;
+}
+
+bool SurfaceMap::HasNear(const Eigen::Vector2d& p) const {
+  const Eigen::Array2i at = ((p - lower_) / kPieceCell).array().floor().cast<int>();
+  for (int row = std::max(0, at.y() - kNear); row <= std::min(piece_height_ - 1, at.y() + kNear);
+       ++row) {
+    for (int column = std::max(0, at.x() - kNear);
+         column <= std::min(piece_width_ - 1, at.x() + kNear); ++column) {
+      const auto first =
+          piece_of_.begin() + 4 * (static_cast<std::ptrdiff_t>(row) * piece_width_ + column);
+      if (std::any_of(first, first + 4, [](std::int32_t index) { return index >= 0; })) return true;
+    }
+  }
+  return false;
 }
 
 }  // namespace hires::mapping

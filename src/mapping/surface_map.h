@@ -30,6 +30,9 @@ class SurfaceMap {
   /// The nearest piece that faces as `n` within the cells around; nullptr if there is none.
   const Piece* Nearest(const Eigen::Vector2d& p, const Eigen::Vector2d& n) const;
 
+  /// Whether a piece lies within some 0.5 m.
+  bool HasNear(const Eigen::Vector2d& p) const;
+
   const Nearness& nearness() const { return nearness_; }
 
  private:

@@ -70,7 +70,7 @@ TEST(ScanMatcherTest, PoseIsFoundAgainFromBesideIt) {
   const SurfaceMap map(std::vector<PlacedPoints>{{&seen, {}}});
   const Pose2 X_MB{0.2, -0.1, 0.05};
   const SurfacePoints points = PointsOf(CornerScan(X_MB), 30.0);
-  const Pose2 searched = SearchMatch(map, points, {}, {0.4, 0.2});
+  const Pose2 searched = SearchMatch(map, points, {}, {0.4, 0.2}).X_MB;
   const ScanMatch match = RefineMatch(map, points, searched, std::nullopt, 0.03);
   EXPECT_NEAR(match.X_MB.x, X_MB.x, 0.005);
   EXPECT_NEAR(match.X_MB.y, X_MB.y, 0.005);
