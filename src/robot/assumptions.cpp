@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <limits>
 #include <set>
 #include <utility>
@@ -111,42 +112,70 @@ double ReachBeyond(const Robot& robot, const SeenShape& seen, const geometry::Po
   return farthest;
 }
 
-/// Whether a link is fixed to the base and to no link with a shape.
-std::vector<bool> OfAnUncoveredBase(const RobotModel& model, int base) {
+/// [m^2] Of what collides of a link, seen from above.
+double AreaOf(const geometry::Aabb& box) {
+  const Eigen::Vector3d size =
+      (box.upper - box.lower).cwiseMax(0.0);  // 0 of one with nothing in it
+  return size.x() * size.y();
+}
+
+/// Whether a link is fixed to the base, and so is nothing that collides, or no more than a sensor
+/// or a token: less than a quarter of what collides of the whole robot, seen from above.
+std::vector<bool> OfAnUncoveredBase(const RobotModel& model, const Bounds& bounds, int base) {
+  constexpr double kCovering = 0.25;
   std::vector<int> group(model.links.size(), 0);  // link that all links fixed to it share
   for (std::size_t i = 1; i < group.size(); ++i) {
     const Joint& joint = *model.links[i].joint;
     group[i] = joint.type == JointType::kFixed ? group[joint.parent] : static_cast<int>(i);
   }
   std::vector<bool> uncovered(group.size(), false);
-  for (std::size_t i = 0; i < group.size(); ++i)
-    if (group[i] == group[base] && !model.links[i].collisions.empty()) return uncovered;
+  geometry::Aabb all;
+  double area = 0.0;
+  for (std::size_t i = 0; i < group.size(); ++i) {
+    all.Include(bounds[i]);
+    if (group[i] == group[base]) area += AreaOf(bounds[i]);
+  }
+  if (area > kCovering * AreaOf(all)) return uncovered;
   for (std::size_t i = 0; i < group.size(); ++i) uncovered[i] = group[i] == group[base];
   return uncovered;
 }
 
+/// Whether nothing of a link collides, or only a token that keeps a simulator quiet.
+bool HasTokenAtMost(const geometry::Aabb& box) {
+  constexpr double kToken = 0.1;  // [m] in all directions
+  return (box.upper - box.lower).maxCoeff() < kToken;
+}
+
 /// Links that are seen where nothing of the robot collides: outside its footprint or above its
-/// shapes. How far a mesh reaches is not known: it counts where its origin is there, and where it
-/// is the base's, of which nothing collides at all.
-std::string SeenText(const Robot& robot, const Bounds& bounds, const std::string& urdf_xml) {
+/// shapes. Meshes are read where a link has no shape of its own. One that is not read counts where
+/// its origin is there, and where it is the base's, of which hardly anything collides.
+std::string SeenText(const Robot& robot, const Bounds& bounds, const std::string& urdf_xml,
+                     const std::string& urdf_path) {
   const RobotModel& model = robot.model;
   const auto X_R = ForwardKinematics(model, robot.profile.joints);
   const int base = *model.FindLink(robot.profile.base_link);
   geometry::Aabb all;
   for (const geometry::Aabb& of_one : bounds) all.Include(of_one);
   const double top = HasShapes(model) ? all.upper.z() : kFootprintTop;
-  const std::vector<bool> is_of_base = OfAnUncoveredBase(model, base);
-  const auto seen = ShapesSeenOnly(urdf_xml);
+  const std::vector<bool> is_of_base = OfAnUncoveredBase(model, bounds, base);
+  const auto seen = ShapesSeen(urdf_xml);
+  LookMeshes meshes(std::filesystem::path(urdf_path).parent_path());
   std::vector<std::string> names;
-  std::string farthest = "how far is not known, as meshes of looks are not read";
+  const std::string unread = "as their meshes cannot be read or are large";
+  std::string farthest = "how far is not known, " + unread;
+  bool is_any_unread = false;
   double most = 0.0;
   for (std::size_t i = 0; i < model.links.size(); ++i) {
     const auto shapes = seen.find(model.links[i].name);
     if (shapes == seen.end()) continue;
     bool counts = false;
-    for (const SeenShape& shape : shapes->second) {
+    for (SeenShape shape : shapes->second) {
+      if (!shape.shape && !HasTokenAtMost(bounds[i])) continue;
+      if (!shape.shape) shape.shape = meshes.Read(shape);
       const double beyond = ReachBeyond(robot, shape, X_R[base].Inverse() * X_R[i], top);
-      counts = counts || beyond > kSeenBeyond || (!shape.shape && is_of_base[i]);
+      const bool is_unread = !shape.shape && (beyond > kSeenBeyond || is_of_base[i]);
+      counts = counts || beyond > kSeenBeyond || is_unread;
+      is_any_unread = is_any_unread || is_unread;
       if (beyond <= std::max(most, kSeenBeyond)) continue;
       most = beyond;
       farthest = fmt::format("'{}' reaches {:.2f} m beyond its footprint or above its shapes",
@@ -155,8 +184,9 @@ std::string SeenText(const Robot& robot, const Bounds& bounds, const std::string
     if (counts) names.push_back(model.links[i].name);
   }
   if (names.empty()) return "";
+  if (is_any_unread && most > 0.0) farthest += ", and some may reach farther, " + unread;
   return fmt::format(
-      "shapes: seen, but with no <collision>, so that nothing touches them, are {}; {}; add "
+      "shapes: seen, but with no <collision> there, so that nothing touches them, are {}; {}; add "
       "<collision> shapes to the URDF, or a `footprint` in a profile that has room for them",
       base::FirstNames(names, kMostNames), farthest);
 }
@@ -297,7 +327,7 @@ std::vector<std::string> LaserLinks(const Robot& robot, const std::string& urdf_
 }
 
 std::vector<std::string> AssumptionsOf(const Robot& robot, const IsGiven& is_given,
-                                       const std::string& urdf_xml) {
+                                       const std::string& urdf_xml, const std::string& urdf_path) {
   std::vector<std::string> texts;
   const Bounds bounds = LinkBounds(robot);
   if (!is_given("footprint")) texts.push_back(FootprintText(robot, bounds));
@@ -308,7 +338,7 @@ std::vector<std::string> AssumptionsOf(const Robot& robot, const IsGiven& is_giv
                     "<collision> shapes to the URDF",
                     kFootprintTop));
   }
-  const std::string seen = SeenText(robot, bounds, urdf_xml);
+  const std::string seen = SeenText(robot, bounds, urdf_xml, urdf_path);
   if (!seen.empty()) texts.push_back(seen);
   const std::vector<std::string> left_out = LeftOut(robot, bounds);
   if (!left_out.empty()) {

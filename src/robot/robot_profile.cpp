@@ -478,7 +478,7 @@ void CompleteBare(const UrdfReading& reading, const std::string& path, const std
                   Robot* robot) {
   SayDoubts(reading.doubts, path, *robot);
   robot->assumed = AssumptionsOf(
-      *robot, [](const std::string& /*key*/) { return false; }, xml);
+      *robot, [](const std::string& /*key*/) { return false; }, xml, path);
   SayBase(reading.base_note, robot);
   SayAssumed(*robot);
   robot->profile.hash = HashOf(robot->profile);
@@ -587,7 +587,7 @@ Robot LoadRobot(const std::string& profile_path) {
   StandOnFloor(&robot);
   if (robot.profile.footprint.empty()) SetFootprint(reading.doubts, &robot);
   SayDoubts(reading.doubts, urdf.path, robot);
-  robot.assumed = AssumptionsOf(robot, IsGivenIn(in), xml);
+  robot.assumed = AssumptionsOf(robot, IsGivenIn(in), xml, urdf.path);
   if (!in.Has("base_link")) SayBase(reading.base_note, &robot);
   SayAssumed(robot);
   robot.profile.hash = HashOf(robot.profile);

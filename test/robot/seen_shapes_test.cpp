@@ -25,7 +25,7 @@ using ::testing::SizeIs;
 using ::testing::UnorderedElementsAre;
 
 const std::string kRoot = HIRES_SOURCE_DIR;
-constexpr char kSeen[] = "shapes: seen, but with no <collision>";
+constexpr char kSeen[] = "shapes: seen, but with no <collision> there";
 
 std::string InUrdf(const std::string& links) { return "<robot name='r'>" + links + "</robot>"; }
 
@@ -53,19 +53,22 @@ std::vector<std::string> AssumedOf(const std::string& links, const std::string& 
                          : LoadRobot(folder.Write("r.yaml", "urdf: r.urdf\n" + profile)).assumed;
 }
 
-TEST(SeenShapesTest, OnlyLinksWithoutCollisionAndWithSomethingToSee) {
-  const auto seen = ShapesSeenOnly(InUrdf(
+TEST(SeenShapesTest, OfEachLinkWhatHasASizeAndMeshesByTheirFile) {
+  const auto seen = ShapesSeen(InUrdf(
       kBase + "<link name='frame'/><link name='both'>" + Shown("<box size='1 1 1'/>") +
       "<collision><geometry><sphere radius='1'/></geometry></collision></link><link name='bare'>" +
-      Shown("<box size='1 2 3'/>") + Shown("<mesh filename='nowhere.dae'/>") +
+      Shown("<box size='1 2 3'/>") + Shown("<mesh filename='nowhere.dae' scale='1 2 3'/>") +
       "<collision/></link><link name='odd'>" + Shown("<box size='1 2'/>") + Shown("<cone/>") +
       Shown("<sphere radius='-1'/>") + Shown("<cylinder radius='1'/>") +
       "<visual/></link><link name='round'>" + Shown("<sphere radius='1'/>") +
       Shown("<cylinder radius='1' length='2'/>") + "</link>"));
-  EXPECT_THAT(seen, UnorderedElementsAre(Pair("bare", SizeIs(2)), Pair("round", SizeIs(2))));
+  EXPECT_THAT(seen, UnorderedElementsAre(Pair("both", SizeIs(1)), Pair("bare", SizeIs(2)),
+                                         Pair("round", SizeIs(2))));
   EXPECT_TRUE(seen.at("bare")[0].shape.has_value());
   EXPECT_FALSE(seen.at("bare")[1].shape.has_value());
-  EXPECT_TRUE(ShapesSeenOnly("no XML").empty());
+  EXPECT_EQ(seen.at("bare")[1].mesh, "nowhere.dae");
+  EXPECT_EQ(seen.at("bare")[1].scale, Eigen::Vector3d(1.0, 2.0, 3.0));
+  EXPECT_TRUE(ShapesSeen("no XML").empty());
 }
 
 TEST(SeenShapesTest, WhatIsSeenBeyondWhatCollidesIsAssumedAndNothingElse) {
@@ -107,7 +110,8 @@ TEST(SeenShapesTest, AMeshCountsWhereItsOriginIsBeyondOrWhereNothingOfTheBaseCol
   };
   EXPECT_THAT(with_mast("0 0 0.1"), Not(Contains(HasSubstr(kSeen))));
   EXPECT_THAT(with_mast("0 0 0.9"), Contains(AllOf(HasSubstr(kSeen), HasSubstr("0.70 m beyond"))));
-  EXPECT_THAT(with_mast("0.5 0 0.1"), Contains(HasSubstr("0.30 m beyond")));
+  EXPECT_THAT(with_mast("0.5 0 0.1"),
+              Contains(AllOf(HasSubstr("0.30 m beyond"), HasSubstr("some may reach farther"))));
   const std::string wheel =
       "<link name='wheel'><collision><geometry><sphere radius='0.1'/></geometry></collision></link>"
       "<joint name='turns' type='continuous'><origin xyz='0 0 0.1'/><parent link='body'/><child "
@@ -117,6 +121,85 @@ TEST(SeenShapesTest, AMeshCountsWhereItsOriginIsBeyondOrWhereNothingOfTheBaseCol
   EXPECT_THAT(
       AssumedOf("<link name='body'>" + mesh + "</link>" + kBase + Fixed("body", "base") + wheel),
       Not(Contains(HasSubstr(kSeen))));
+}
+
+/// Two wheels of radius 0.1 m at y 0.15 m and -0.15 m.
+std::string WheelsOf(const std::string& parent) {
+  std::string links;
+  for (const char* y : {"0.15", "-0.15"}) {
+    links += fmt::format(
+        "<link name='wheel{1}'><collision><origin rpy='1.5708 0 0'/><geometry><cylinder "
+        "radius='0.1' length='0.04'/></geometry></collision></link><joint name='turns{1}' "
+        "type='continuous'><origin xyz='0 {1} 0.1'/><parent link='{0}'/><child link='wheel{1}'/>"
+        "<axis xyz='0 1 0'/></joint>",
+        parent, y);
+  }
+  return links;
+}
+
+std::string Collides(const std::string& shape) {
+  return "<collision><geometry>" + shape + "</geometry></collision>";
+}
+
+TEST(SeenShapesTest, ACollisionShapeSmallerThanTheBodyHidesNothingOfIt) {
+  const std::string body = Shown("<box size='0.45 0.38 0.2'/>");
+  for (const char* size : {"0.01 0.01 0.01", "0 0 0", "0.2 0.2 0.2"}) {
+    const std::string box = fmt::format("<box size='{}'/>", size);
+    EXPECT_THAT(
+        AssumedOf("<link name='body'>" + body + Collides(box) + "</link>" + WheelsOf("body")),
+        Contains(AllOf(HasSubstr(kSeen), HasSubstr("'body' reaches 0.13 m beyond"))))
+        << size;
+  }
+  EXPECT_THAT(AssumedOf("<link name='body'>" + body + Collides("<box size='0.45 0.38 0.2'/>") +
+                        "</link>" + WheelsOf("body")),
+              Not(Contains(HasSubstr(kSeen))));
+}
+
+TEST(SeenShapesTest, AMeshOfALinkWithoutARealShapeIsMeasured) {
+  const TemporaryFolder folder;
+  folder.Write("chassis.obj", "v -0.3 -0.2 0\nv 0.5 -0.2 0\nv 0.5 0.2 0.1\nf 1 2 3\n");
+  const auto assumed_of = [&](const std::string& own, double scale = 1.0) {
+    const std::string look =
+        Shown(fmt::format("<mesh filename='chassis.obj' scale='{0} {0} {0}'/>", scale));
+    return LoadRobotFromUrdf(folder.Write("r.urdf", InUrdf("<link name='body'>" + look + own +
+                                                           "</link>" + WheelsOf("body"))))
+        .assumed;
+  };
+  const auto told = Contains(AllOf(HasSubstr(kSeen), HasSubstr("'body' reaches 0.40 m beyond")));
+  EXPECT_THAT(assumed_of(""), told);
+  EXPECT_THAT(assumed_of(Collides("<box size='0.01 0.01 0.01'/>")), told);
+  EXPECT_THAT(assumed_of("", 0.1), Not(Contains(HasSubstr(kSeen)))) << "all of it within";
+  EXPECT_THAT(assumed_of(Collides("<box size='0.6 0.4 0.1'/>")), Not(Contains(HasSubstr(kSeen))))
+      << "a link with a real shape is taken to have the right one";
+}
+
+TEST(SeenShapesTest, ASensorOnTheBaseDoesNotCoverItsMesh) {
+  const std::string mesh = Shown("<mesh filename='package://nowhere/a.dae'/>");
+  const auto with_box = [&](const std::string& size) {
+    return AssumedOf("<link name='base'/><link name='chassis'>" + mesh + "</link>" +
+                     Fixed("base", "chassis") + "<link name='laser'>" +
+                     Collides("<box size='" + size + "'/>") + "</link>" +
+                     Fixed("base", "laser", "0 0 0.3") + WheelsOf("base"));
+  };
+  EXPECT_THAT(with_box("0.05 0.05 0.05"),
+              Contains(AllOf(HasSubstr(kSeen), HasSubstr("are chassis;"), HasSubstr("meshes"))));
+  EXPECT_THAT(with_box("0.3 0.2 0.05"), Not(Contains(HasSubstr(kSeen))));
+}
+
+TEST(SeenShapesTest, MeshesOfLooksAreReadWhileThatCostsLittle) {
+  const TemporaryFolder folder;
+  const std::string triangle = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
+  folder.Write("small.obj", triangle);
+  folder.Write("large.obj", triangle + std::string(LookMeshes::kMostBytes, '\n'));
+  const auto look = [](const std::string& file) { return SeenShape{{}, std::nullopt, file}; };
+  LookMeshes meshes(folder.path());
+  EXPECT_FALSE(meshes.Read(look("large.obj")));
+  EXPECT_TRUE(meshes.Read(look("small.obj")));
+  for (int i = 0; i < LookMeshes::kMostFailed; ++i)
+    EXPECT_FALSE(meshes.Read(look(fmt::format("missing{}.obj", i))));
+  folder.Write("later.obj", triangle);
+  EXPECT_FALSE(meshes.Read(look("later.obj"))) << "it gave up";
+  EXPECT_TRUE(meshes.Read(look("small.obj"))) << "known from before";
 }
 
 TEST(SeenShapesTest, AFootprintWithRoomForItIsEnoughButNotForWhatIsHigher) {
@@ -143,6 +226,11 @@ TEST(SeenShapesTest, OfManyAFewAreNamed) {
 TEST(SeenShapesTest, OurRobotsAreQuiet) {
   for (const char* name : {"cart", "car", "pr2_tray", "fetch"}) {
     EXPECT_THAT(LoadRobotFromUrdf(kRoot + "/urdf/" + name + ".urdf").assumed,
+                Not(Contains(HasSubstr(kSeen))))
+        << name;
+  }
+  for (const char* name : {"cart", "car", "pr2", "fetch"}) {
+    EXPECT_THAT(LoadRobot(kRoot + "/config/robots/" + name + ".yaml").assumed,
                 Not(Contains(HasSubstr(kSeen))))
         << name;
   }
