@@ -37,7 +37,8 @@ struct SteeredWheel {
   std::string joint;
   double largest_angle{0.0};  // [rad] that it can be turned to both sides
   bool has_limits{false};
-  Eigen::Vector3d centre;  // of the joint that steers, in the base frame
+  Eigen::Vector3d centre;              // of the joint that steers, in the base frame
+  Eigen::Vector3d axis, wheel_centre;  // of the wheel that it carries, in the base frame
 };
 
 struct Wheels {
@@ -88,7 +89,12 @@ std::optional<SteeredWheel> SteeredBy(const Joint& swivel, const geometry::Pose3
   const double angle =
       has_limits ? std::min(-swivel.limits->lower, swivel.limits->upper) : kUsualSteering;
   if (angle < kLeastSteering) return std::nullopt;
-  return SteeredWheel{swivel.name, std::min(angle, kMostSteering), has_limits, X_RS.translation};
+  SteeredWheel wheel;
+  wheel.joint = swivel.name;
+  wheel.largest_angle = std::min(angle, kMostSteering);
+  wheel.has_limits = has_limits;
+  wheel.centre = X_RS.translation;
+  return wheel;
 }
 
 /// Of all links in the frame of the base; a name that no link has, which is refused later, counts
@@ -114,8 +120,11 @@ Wheels WheelsOf(const RobotModel& model, const std::string& base_link) {
     if (std::abs(axis.z()) > kHorizontal) continue;
     if (const auto swivel = SwivelAbove(model, X_B, static_cast<int>(i))) {
       wheels.casters.push_back(joint->name);
-      const auto steered = SteeredBy(*model.links[*swivel].joint, X_B[*swivel], is_car);
-      if (steered) wheels.steered.push_back(*steered);
+      auto steered = SteeredBy(*model.links[*swivel].joint, X_B[*swivel], is_car);
+      if (!steered) continue;
+      steered->axis = axis;
+      steered->wheel_centre = X_B[i].translation;
+      wheels.steered.push_back(*steered);
     } else {
       wheels.fixed.push_back({joint->name, axis, X_B[i].translation});
     }
@@ -208,11 +217,36 @@ std::string WithMisfit(const std::string& why, const std::string& misfit) {
   return misfit.empty() ? why : why + "; but " + misfit;
 }
 
-/// A car, if some of the steered wheels lie off the axle of the pair.
-std::optional<DriveGuess> GuessCar(const Wheels& wheels, std::size_t first, std::size_t second,
+/// What of a car keeps its direction.
+struct Axle {
+  std::string what;               // "parallel wheels (left, right)"
+  Eigen::Vector3d along, middle;  // in the base frame
+};
+
+Axle AxleOf(const FixedWheel& one, const FixedWheel& other) {
+  return {fmt::format("parallel wheels ({}, {})", one.joint, other.joint), one.axis.normalized(),
+          0.5 * (one.centre + other.centre)};
+}
+
+/// Of a bicycle: a wheel that rolls on the floor as a steered one does.
+std::optional<Axle> AxleOfOneWheel(const Wheels& wheels) {
+  for (const FixedWheel& fixed : wheels.fixed) {
+    for (const SteeredWheel& steered : wheels.steered) {
+      const double above = fixed.centre.z() - steered.wheel_centre.z();
+      if (std::abs(above) > kSameFloor || std::abs(fixed.axis.dot(steered.axis)) <= kParallel)
+        continue;
+      return Axle{fmt::format("a wheel that keeps its direction ({})", fixed.joint),
+                  fixed.axis.normalized(), fixed.centre};
+    }
+  }
+  return std::nullopt;
+}
+
+/// A car, if some of the steered wheels lie off its axle.
+std::optional<DriveGuess> GuessCar(const Wheels& wheels, const Axle& axle,
                                    const std::string& base_link) {
-  const Eigen::Vector3d along = wheels.fixed[first].axis.normalized();
-  const Eigen::Vector3d p_BA = 0.5 * (wheels.fixed[first].centre + wheels.fixed[second].centre);
+  const Eigen::Vector3d& along = axle.along;
+  const Eigen::Vector3d& p_BA = axle.middle;
   const SteeredWheel* widest = nullptr;
   for (const SteeredWheel& wheel : wheels.steered) {
     const double ahead = (wheel.centre - p_BA).dot(Eigen::Vector3d::UnitZ().cross(along));
@@ -224,11 +258,8 @@ std::optional<DriveGuess> GuessCar(const Wheels& wheels, std::size_t first, std:
   if (!widest) return std::nullopt;
   const double radius = TurningRadius(*widest, along, p_BA);
   const std::string why = fmt::format(
-      "parallel wheels ({}, {}) and steered ones; min_turning_radius={:.2f} m from the {:.2f} rad "
-      "{} "
-      "{}",
-      wheels.fixed[first].joint, wheels.fixed[second].joint, radius, widest->largest_angle,
-      widest->has_limits ? "of" : "ASSUMED of", widest->joint);
+      "{} and steered ones; min_turning_radius={:.2f} m from the {:.2f} rad {} {}", axle.what,
+      radius, widest->largest_angle, widest->has_limits ? "of" : "ASSUMED of", widest->joint);
   const std::string misfit = MisfitOf(along, p_BA, kOnAxle, base_link);
   return DriveGuess{Drive::kCarLike, radius, WithMisfit(why, misfit), misfit};
 }
@@ -273,8 +304,8 @@ Drive DriveOf(const std::string& name) {
 DriveGuess GuessDrive(const RobotModel& model, const std::string& base_link) {
   const Wheels wheels = WheelsOf(model, base_link);
   if (const auto pair = ParallelPair(wheels)) {
-    if (auto car = GuessCar(wheels, pair->first, pair->second, base_link)) return *car;
     const FixedWheel &one = wheels.fixed[pair->first], &other = wheels.fixed[pair->second];
+    if (auto car = GuessCar(wheels, AxleOf(one, other), base_link)) return *car;
     const std::string misfit = MisfitOf(one.axis, MiddleOf(wheels, one), kOnAxles, base_link);
     std::string why = fmt::format("parallel wheels: {}, {}", one.joint, other.joint);
     const auto plugin = PluginOf(model);
@@ -285,6 +316,9 @@ DriveGuess GuessDrive(const RobotModel& model, const std::string& base_link) {
   if (wheels.fixed.size() >= 3) {
     return {Drive::kOmnidirectional, 0.0,
             "three wheels in three directions: " + FixedNames(wheels)};
+  }
+  if (const auto axle = AxleOfOneWheel(wheels)) {
+    if (auto car = GuessCar(wheels, *axle, base_link)) return *car;
   }
   if (wheels.fixed.empty() && wheels.casters.size() >= 3) {
     return {Drive::kOmnidirectional, 0.0,

@@ -20,10 +20,11 @@ struct DriveGuess {
 /// How a robot drives, from its wheels: continuous joints about a horizontal axis. Wheels that turn
 /// about a vertical axis, too, are casters; they are steered where the joint that turns them has
 /// limits or "steer" in its name. Parallel wheels that keep their direction and one or more that
-/// are steered make a car; that of a car's plugin are steered whatever their joints are. No wheel
-/// but three casters and more (a PR2), or three wheels of which no two are parallel, drive
-/// anywhere; of all else a simulator's plugin may tell; the rest is taken to drive differentially,
-/// which a robot that can do more, a car aside, can do as well.
+/// are steered make a car, and so does one wheel that keeps its direction (a bicycle); that of a
+/// car's plugin are steered whatever their joints are. No wheel but three casters and more (a PR2),
+/// or three wheels of which no two are parallel, drive anywhere; of all else a simulator's plugin
+/// may tell; the rest is taken to drive differentially, which a robot that can do more, a car
+/// aside, can do as well.
 ///
 /// Where the axle of parallel wheels is not below the origin of base_link, about which a base turns
 /// here, or does not lie across its x axis, along which it drives, `misfit` says so.

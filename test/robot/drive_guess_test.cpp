@@ -82,6 +82,20 @@ TEST(DriveGuessTest, SteeredWheelsBesideFixedOnesMakeACar) {
                                HasSubstr("min_turning_radius=1.76 m")));
 }
 
+TEST(DriveGuessTest, OneSteeredWheelAndOneThatKeepsItsDirectionMakeACar) {
+  const std::string front = Steered(
+      "front", 0.0, R"(type="revolute"><limit lower="-1.2" upper="1.2" effort="1" velocity="1"/>)");
+  const DriveGuess guess = GuessFor(Turning("rear", "base", "0 1 0") + front);
+  EXPECT_EQ(guess.drive, Drive::kCarLike);
+  EXPECT_NEAR(guess.min_turning_radius, 0.8 / std::tan(1.2), 1e-9);
+  EXPECT_THAT(guess.why, AllOf(HasSubstr("a wheel that keeps its direction (rear_joint)"),
+                               HasSubstr("1.20 rad of front_knuckle")));
+  EXPECT_EQ(guess.misfit, "");
+  EXPECT_EQ(GuessFor(Turning("roller", "base", "1 0 0") + front).drive, Drive::kDifferential)
+      << "it rolls to the side";
+  EXPECT_EQ(GuessFor(front).drive, Drive::kDifferential);
+}
+
 TEST(DriveGuessTest, ASteeringJointWithoutLimitsHasAssumedOnes) {
   EXPECT_EQ(GuessFor(kRearWheels + Steered("a", 0.0, R"(type="continuous">)")).drive,
             Drive::kDifferential)
