@@ -242,7 +242,8 @@ std::optional<Axle> AxleOfOneWheel(const Wheels& wheels) {
   return std::nullopt;
 }
 
-/// A car, if some of the steered wheels lie off its axle.
+/// A car, if some of the steered wheels lie off its axle. What does not roll along with it is none:
+/// joints of an arm that swings are steered wheels by their axes, too.
 std::optional<DriveGuess> GuessCar(const Wheels& wheels, const Axle& axle,
                                    const std::string& base_link) {
   const Eigen::Vector3d& along = axle.along;
@@ -250,7 +251,7 @@ std::optional<DriveGuess> GuessCar(const Wheels& wheels, const Axle& axle,
   const SteeredWheel* widest = nullptr;
   for (const SteeredWheel& wheel : wheels.steered) {
     const double ahead = (wheel.centre - p_BA).dot(Eigen::Vector3d::UnitZ().cross(along));
-    if (std::abs(ahead) <= kOnAxle) continue;
+    if (std::abs(ahead) <= kOnAxle || std::abs(wheel.axis.dot(along)) <= kParallel) continue;
     if (!widest || TurningRadius(wheel, along, p_BA) > TurningRadius(*widest, along, p_BA)) {
       widest = &wheel;
     }

@@ -219,6 +219,13 @@ TEST(DriveGuessTest, ByACarsPluginItsWheelsThatSwivelAreSteered) {
   }
 }
 
+TEST(DriveGuessTest, AFetchsArmSteersNothing) {
+  const RobotModel fetch = LoadRobotModel(std::string(HIRES_SOURCE_DIR) + "/urdf/fetch.urdf");
+  const DriveGuess guess = GuessDrive(fetch, fetch.links.front().name);
+  EXPECT_EQ(guess.drive, Drive::kDifferential);
+  EXPECT_THAT(guess.why, HasSubstr("parallel wheels: l_wheel_joint, r_wheel_joint"));
+}
+
 TEST(DriveGuessTest, APr2DrivesAnywhere) {
   const RobotModel pr2 = LoadRobotModel(std::string(HIRES_SOURCE_DIR) + "/urdf/pr2_tray.urdf");
   EXPECT_EQ(GuessDrive(pr2, pr2.links.front().name).drive, Drive::kOmnidirectional);
