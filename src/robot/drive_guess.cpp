@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <map>
 #include <optional>
 #include <utility>
@@ -28,6 +29,9 @@ constexpr double kUsualSteering = 0.5;
 constexpr double kLeastSteering = 0.02;
 constexpr double kMostSteering = 1.4;
 
+// [rad] A little less than half a turn, which gives all directions to a wheel that rolls both ways.
+constexpr double kHalfTurn = 3.0;
+
 struct FixedWheel {
   std::string joint;
   Eigen::Vector3d axis, centre;  // in the base frame
@@ -37,13 +41,19 @@ struct SteeredWheel {
   std::string joint;
   double largest_angle{0.0};  // [rad] that it can be turned to both sides
   bool has_limits{false};
+  bool can_turn_aside{true};           // far enough for its wheel to roll sideways
   Eigen::Vector3d centre;              // of the joint that steers, in the base frame
   Eigen::Vector3d axis, wheel_centre;  // of the wheel that it carries, in the base frame
 };
 
+struct CasterWheel {
+  std::string joint;
+  double height{0.0};  // [m] of its centre, in the base frame
+};
+
 struct Wheels {
   std::vector<FixedWheel> fixed;  // keep their direction
-  std::vector<std::string> casters;
+  std::vector<CasterWheel> casters;
   std::vector<SteeredWheel> steered;  // those of the casters
 };
 
@@ -93,6 +103,8 @@ std::optional<SteeredWheel> SteeredBy(const Joint& swivel, const geometry::Pose3
   wheel.joint = swivel.name;
   wheel.largest_angle = std::min(angle, kMostSteering);
   wheel.has_limits = has_limits;
+  wheel.can_turn_aside =
+      has_limits ? swivel.limits->upper - swivel.limits->lower >= kHalfTurn : !is_car;
   wheel.centre = X_RS.translation;
   return wheel;
 }
@@ -108,6 +120,22 @@ std::vector<geometry::Pose3> PosesInBase(const RobotModel& model, const std::str
   return X_B;
 }
 
+/// Wheels whose joint has no limits take those of one beside it, as a car's turn together.
+void TakeLimitsOfNeighbours(std::vector<SteeredWheel>* wheels) {
+  for (SteeredWheel& wheel : *wheels) {
+    const Eigen::Vector3d forward = Eigen::Vector3d::UnitZ().cross(wheel.axis.normalized());
+    for (const SteeredWheel& other : *wheels) {
+      if (wheel.has_limits || !other.has_limits) continue;
+      if (std::abs(wheel.axis.dot(other.axis)) <= kParallel) continue;
+      if (std::abs((other.centre - wheel.centre).dot(forward)) > kOnAxles) continue;
+      wheel.joint = other.joint;
+      wheel.largest_angle = other.largest_angle;
+      wheel.has_limits = true;
+      wheel.can_turn_aside = other.can_turn_aside;
+    }
+  }
+}
+
 Wheels WheelsOf(const RobotModel& model, const std::string& base_link) {
   const std::vector<geometry::Pose3> X_B = PosesInBase(model, base_link);
   const auto plugin = PluginOf(model);
@@ -119,7 +147,7 @@ Wheels WheelsOf(const RobotModel& model, const std::string& base_link) {
     const Eigen::Vector3d axis = X_B[i].rotation * joint->axis;
     if (std::abs(axis.z()) > kHorizontal) continue;
     if (const auto swivel = SwivelAbove(model, X_B, static_cast<int>(i))) {
-      wheels.casters.push_back(joint->name);
+      wheels.casters.push_back({joint->name, X_B[i].translation.z()});
       auto steered = SteeredBy(*model.links[*swivel].joint, X_B[*swivel], is_car);
       if (!steered) continue;
       steered->axis = axis;
@@ -129,6 +157,7 @@ Wheels WheelsOf(const RobotModel& model, const std::string& base_link) {
       wheels.fixed.push_back({joint->name, axis, X_B[i].translation});
     }
   }
+  TakeLimitsOfNeighbours(&wheels.steered);
   return wheels;
 }
 
@@ -248,9 +277,10 @@ std::optional<DriveGuess> GuessCar(const Wheels& wheels, const Axle& axle,
                                    const std::string& base_link) {
   const Eigen::Vector3d& along = axle.along;
   const Eigen::Vector3d& p_BA = axle.middle;
+  const Eigen::Vector3d forward = Eigen::Vector3d::UnitZ().cross(along);
   const SteeredWheel* widest = nullptr;
   for (const SteeredWheel& wheel : wheels.steered) {
-    const double ahead = (wheel.centre - p_BA).dot(Eigen::Vector3d::UnitZ().cross(along));
+    const double ahead = (wheel.centre - p_BA).dot(forward);
     if (std::abs(ahead) <= kOnAxle || std::abs(wheel.axis.dot(along)) <= kParallel) continue;
     if (!widest || TurningRadius(wheel, along, p_BA) > TurningRadius(*widest, along, p_BA)) {
       widest = &wheel;
@@ -262,6 +292,53 @@ std::optional<DriveGuess> GuessCar(const Wheels& wheels, const Axle& axle,
       "{} and steered ones; min_turning_radius={:.2f} m from the {:.2f} rad {} {}", axle.what,
       radius, widest->largest_angle, widest->has_limits ? "of" : "ASSUMED of", widest->joint);
   const std::string misfit = MisfitOf(along, p_BA, kOnAxle, base_link);
+  return DriveGuess{Drive::kCarLike, radius, WithMisfit(why, misfit), misfit};
+}
+
+/// Those of the steered wheels that cannot be turned sideways and roll on the floor, in one
+/// direction as they stand.
+std::vector<SteeredWheel> NarrowOnFloor(const Wheels& wheels) {
+  double lowest = std::numeric_limits<double>::infinity();
+  for (const CasterWheel& wheel : wheels.casters) lowest = std::min(lowest, wheel.height);
+  std::vector<SteeredWheel> narrow;
+  for (const SteeredWheel& wheel : wheels.steered) {
+    if (wheel.can_turn_aside || wheel.wheel_centre.z() - lowest > kSameFloor) continue;
+    if (narrow.empty() || std::abs(wheel.axis.dot(narrow.front().axis)) > kParallel)
+      narrow.push_back(wheel);
+  }
+  return narrow;
+}
+
+/// A car all of whose wheels are steered, some ahead of others. It turns about its middle, if front
+/// and rear turn against each other; that is not known, so its circle is that of a car of which the
+/// wheels of one end keep straight.
+std::optional<DriveGuess> GuessCarOfSteered(const std::vector<SteeredWheel>& wheels,
+                                            const std::string& base_link) {
+  const Eigen::Vector3d along = wheels.front().axis.normalized();
+  const Eigen::Vector3d forward = Eigen::Vector3d::UnitZ().cross(along);
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  double rear = std::numeric_limits<double>::infinity(), front = -rear;
+  std::vector<std::string> joints;
+  for (const SteeredWheel& wheel : wheels) {
+    sum += wheel.centre;
+    rear = std::min(rear, wheel.centre.dot(forward));
+    front = std::max(front, wheel.centre.dot(forward));
+    joints.push_back(wheel.joint);
+  }
+  if (front - rear <= kOnAxle) return std::nullopt;
+  const Eigen::Vector3d p_BM = sum / static_cast<double>(wheels.size());
+  double radius = 0.0, angle = kMostSteering;
+  for (const SteeredWheel& wheel : wheels) {
+    const double across = std::abs((wheel.centre - p_BM).dot(along));
+    radius = std::max(radius, (front - rear) / std::tan(wheel.largest_angle) + across);
+    angle = std::min(angle, wheel.largest_angle);
+  }
+  const std::string why = fmt::format(
+      "no wheel that keeps its direction, but steered ones that cannot be turned sideways ({}); "
+      "min_turning_radius={:.2f} m from {:.2f} rad at one end alone: that front and rear turn "
+      "against each other is not modelled",
+      base::Join(joints, ", "), radius, angle);
+  const std::string misfit = MisfitOf(along, p_BM, kOnAxles, base_link);
   return DriveGuess{Drive::kCarLike, radius, WithMisfit(why, misfit), misfit};
 }
 
@@ -282,6 +359,16 @@ DriveGuess GuessByPlugin(const RobotModel& model) {
   return {Drive::kDifferential, 0.0,
           no_wheels + "; but " + what +
               " of a car: a profile says so, drive: car_like with min_turning_radius"};
+}
+
+/// Where no wheel keeps its direction.
+DriveGuess GuessByCasters(const RobotModel& model, const Wheels& wheels,
+                          const std::string& base_link) {
+  const std::vector<SteeredWheel> narrow = NarrowOnFloor(wheels);
+  if (!narrow.empty()) return GuessCarOfSteered(narrow, base_link).value_or(GuessByPlugin(model));
+  std::vector<std::string> names;
+  for (const CasterWheel& wheel : wheels.casters) names.push_back(wheel.joint);
+  return {Drive::kOmnidirectional, 0.0, "steered casters alone: " + base::Join(names, ", ")};
 }
 
 const std::map<Drive, std::string>& Names() {
@@ -321,10 +408,8 @@ DriveGuess GuessDrive(const RobotModel& model, const std::string& base_link) {
   if (const auto axle = AxleOfOneWheel(wheels)) {
     if (auto car = GuessCar(wheels, *axle, base_link)) return *car;
   }
-  if (wheels.fixed.empty() && wheels.casters.size() >= 3) {
-    return {Drive::kOmnidirectional, 0.0,
-            "steered casters alone: " + base::Join(wheels.casters, ", ")};
-  }
+  if (wheels.fixed.empty() && wheels.casters.size() >= 3)
+    return GuessByCasters(model, wheels, base_link);
   return GuessByPlugin(model);
 }
 

@@ -107,6 +107,43 @@ TEST(DriveGuessTest, ASteeringJointWithoutLimitsHasAssumedOnes) {
   EXPECT_THAT(guess.why, HasSubstr("ASSUMED"));
 }
 
+TEST(DriveGuessTest, ASteeringJointWithoutLimitsTakesThoseOfTheOneBesideIt) {
+  const std::string limited =
+      R"(type="revolute"><limit lower="-1.0" upper="1.0" effort="1" velocity="1"/>)";
+  const DriveGuess guess = GuessFor(kRearWheels + Steered("left_steer", 0.1, limited) +
+                                    Steered("right_steer", -0.1, R"(type="continuous">)"));
+  EXPECT_EQ(guess.drive, Drive::kCarLike);
+  EXPECT_NEAR(guess.min_turning_radius, 0.8 / std::tan(1.0) + 0.1, 1e-9);
+  EXPECT_THAT(guess.why, AllOf(HasSubstr("1.00 rad of left_steer"), Not(HasSubstr("ASSUMED"))));
+}
+
+/// Four wheels, all steered, at x 0.3 m and -0.3 m, y 0.2 m and -0.2 m.
+std::string AllSteered(double lower, double upper) {
+  std::string wheels;
+  for (const double x : {0.3, -0.3}) {
+    for (const double y : {0.2, -0.2}) {
+      const std::string name = fmt::format("w{}{}", x > 0.0 ? 'f' : 'b', y > 0.0 ? 'l' : 'r');
+      wheels += fmt::format(
+          R"(<joint name="{0}_hinge" type="revolute"><origin xyz="{1} {2} 0"/><parent link="base"/><child link="{0}"/><axis xyz="0 0 1"/><limit lower="{3}" upper="{4}" effort="1" velocity="1"/></joint><link name="{0}"/>)",
+          name, x, y, lower, upper);
+      wheels += Turning(name + "_wheel", name, "0 1 0");
+    }
+  }
+  return wheels;
+}
+
+TEST(DriveGuessTest, CastersThatCannotTurnSidewaysMakeACar) {
+  for (const double limit : {0.3, 0.5, 1.2}) {
+    const DriveGuess guess = GuessFor(AllSteered(-limit, limit));
+    EXPECT_EQ(guess.drive, Drive::kCarLike) << limit;
+    EXPECT_NEAR(guess.min_turning_radius, 0.6 / std::tan(limit) + 0.2, 1e-9);
+    EXPECT_THAT(guess.why, AllOf(HasSubstr("wfl_hinge"), HasSubstr("is not modelled")));
+    EXPECT_EQ(guess.misfit, "") << "it turns about its middle";
+  }
+  EXPECT_EQ(GuessFor(AllSteered(-1.57, 1.57)).drive, Drive::kOmnidirectional);
+  EXPECT_EQ(GuessFor(AllSteered(0.0, 3.14)).drive, Drive::kOmnidirectional);
+}
+
 TEST(DriveGuessTest, ACarWhoseRootIsNotOverItsAxleIsToldSo) {
   const auto rear = [](const char* name, double y) {
     return fmt::format(
