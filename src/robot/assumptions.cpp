@@ -29,15 +29,38 @@ using IsGiven = std::function<bool(const std::string&)>;
 constexpr std::size_t kMostNames = 6;
 constexpr double kSeenBeyond = 0.05;  // [m] that what is only seen may reach beyond what collides
 
+/// Whether a footprint is made of it.
+bool IsInFootprint(const Robot& robot, const Bounds& bounds, std::size_t link) {
+  return !robot.model.links[link].collisions.empty() && bounds[link].lower.z() <= kFootprintTop;
+}
+
+/// "; 'antenna' alone makes it 7.30 m longer": of a part, as the body is wide, that makes a
+/// footprint half as long again or more. @param size  of the footprint
+std::string LongestText(const Robot& robot, const Bounds& bounds, const Eigen::Vector3d& size) {
+  constexpr double kMuchLonger = 1.5, kAsWide = 0.5;
+  for (std::size_t i = 0; i < bounds.size(); ++i) {
+    if (!IsInFootprint(robot, bounds, i)) continue;
+    if (bounds[i].upper.y() - bounds[i].lower.y() >= kAsWide * size.y()) continue;
+    geometry::Aabb others;
+    for (std::size_t j = 0; j < bounds.size(); ++j)
+      if (j != i && IsInFootprint(robot, bounds, j)) others.Include(bounds[j]);
+    const double length = others.upper.x() - others.lower.x();  // < 0 where there are none
+    if (length > 0.0 && size.x() >= kMuchLonger * length)
+      return fmt::format("; '{}' alone makes it {:.2f} m longer", robot.model.links[i].name,
+                         size.x() - length);
+  }
+  return "";
+}
+
 std::string FootprintText(const Robot& robot, const Bounds& bounds) {
   geometry::Aabb hull;
   for (const Eigen::Vector2d& p : robot.profile.footprint) hull.Include({p.x(), p.y(), 0.0});
   const Eigen::Vector3d size = hull.upper - hull.lower;
   return fmt::format(
       "footprint: the outline of all shapes, {:.2f} m long and {:.2f} m wide, and '{}' reaches "
-      "farthest to a side; if that is wrong, write `footprint: [{{x: .., y: ..}}, ...]` in a "
+      "farthest to a side{}; if that is wrong, write `footprint: [{{x: .., y: ..}}, ...]` in a "
       "profile",
-      size.x(), size.y(), WidestLink(robot, bounds));
+      size.x(), size.y(), WidestLink(robot, bounds), LongestText(robot, bounds, size));
 }
 
 /// What lies above all that a footprint is made of, and is held against nothing there.

@@ -14,6 +14,7 @@ namespace hires::robot::base_height_test {
 namespace {
 
 using hires::test_support::Rounds;
+using ::testing::AllOf;
 using ::testing::Contains;
 using ::testing::HasSubstr;
 using ::testing::Not;
@@ -96,6 +97,26 @@ constexpr char kArmed[] = R"(<robot name="armed">
   <link name="eye"/>
   <gazebo reference="eye"><sensor type="gpu_ray" name="s"/></gazebo>
 </robot>)";
+
+TEST(AssumptionsTest, APartThatMakesTheFootprintMuchLongerIsNamed) {
+  const hires::test_support::TemporaryFolder folder;
+  const auto assumed_of = [&](double length, double width) {
+    return LoadRobotFromUrdf(
+               folder.Write(
+                   "long.urdf",
+                   fmt::format(
+                       R"(<robot name="long"><link name="base"><collision><origin xyz="0 0 0.2"/><geometry><box size="0.9 0.6 0.4"/></geometry></collision></link>
+  <joint name="j" type="fixed"><origin xyz="0 0 0.6"/><parent link="base"/><child link="imu"/></joint>
+  <link name="imu"><collision><geometry><box size="{} {} 0.1"/></geometry></collision></link></robot>)",
+                       length, width)))
+        .assumed;
+  };
+  EXPECT_THAT(assumed_of(8.2, 0.1),
+              Contains(AllOf(HasSubstr("8.20 m long and 0.60 m wide, and 'base' reaches farthest"),
+                             HasSubstr("'imu' alone makes it 7.30 m longer"))));
+  EXPECT_THAT(assumed_of(1.2, 0.1), Not(Contains(HasSubstr("longer"))));
+  EXPECT_THAT(assumed_of(8.2, 1.0), Contains(HasSubstr("'imu' reaches farthest to a side;")));
+}
 
 TEST(AssumptionsTest, WhatNoFileSaysIsSaidWithWhatToWrite) {
   const hires::test_support::TemporaryFolder folder;
