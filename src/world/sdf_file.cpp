@@ -204,10 +204,12 @@ std::optional<sdf::Root> ReadSdf(const std::string& path, const ResourceFinder& 
     throw base::ConfigError(
         fmt::format("{}: its outermost element is <{}>, wanted <sdf>", path, files.at(path).root));
   }
-  if (files.at(path).num_models > 1) {
+  const std::size_t num_models =
+      std::max<std::size_t>(files.at(path).num_models, files.at(path).models_beside_world.size());
+  if (num_models > 1) {
     throw base::ConfigError(fmt::format(
         "{}: has {} <model> elements at its top, wanted one; give each a file of its own", path,
-        files.at(path).num_models));
+        num_models));
   }
   QuickReader reader(files, notes);
   std::optional<sdf::Root> root = Load(reader.Read(path), path, notes);
@@ -225,6 +227,7 @@ SdfFiles ReadWorldFiles(const std::string& path, const ResourceFinder& finder, L
   SdfFile& file = files.at(path);
   why = WhyNoWorldBy(file.root, path);
   if (!why.empty()) throw base::ConfigError(why);
+  for (const std::string& place : file.models_beside_world) NoteBesideWorld("model", place, notes);
   if (std::string wrapped = AsWorld(file); !wrapped.empty()) {
     file.text = std::move(wrapped);
     file.num_worlds = 1;

@@ -497,6 +497,26 @@ TEST_F(WildWorldTest, WhatCannotStandInTheWayNeedsNoWord) {
   EXPECT_EQ(log_, "");
 }
 
+TEST_F(WildWorldTest, WhatStandsBesideTheWorldIsNamedWithTheRemedy) {
+  WriteModel("crate", StaticModel("crate", LinkWithShape(kUnitBox)));
+  const World world = LoadWorld(folder_.Write(
+      "test.world",
+      "<sdf version='1.6'>\n<model name='before'/>\n<world name='w'>" +
+          StaticModel("inside", LinkWithShape(kUnitBox)) + "</world>\n" +
+          StaticModel("crate", LinkWithShape(kUnitBox)) +
+          "<include><uri>model://crate</uri></include><actor name='walker'/><light name='l'/>"
+          "</sdf>"));
+  ASSERT_EQ(world.statics.size(), 1u);
+  EXPECT_EQ(world.statics[0].name, "inside");
+  EXPECT_THAT(world.notes,
+              ElementsAre(AllOf(HasSubstr("1 element <include> beside <world> left out"),
+                                HasSubstr("move it into <world>"), HasSubstr("test.world:6")),
+                          HasSubstr("1 actor left out"),
+                          AllOf(HasSubstr("2 elements <model> beside <world> left out"),
+                                HasSubstr("move it into <world>"), HasSubstr("first"),
+                                HasSubstr("test.world:2 'before'"))));
+}
+
 TEST_F(WildWorldTest, AStateThatSaysOtherwiseIsNamed) {
   const std::string box = StaticModel("a", "<pose>1 2 0 0 0 0</pose>" + LinkWithShape(kUnitBox));
   const std::string state =

@@ -119,6 +119,7 @@ class Pruner {
     }
     if (IsUselessJoint(child, parent)) return false;
     if (IsSecond(child, parent)) return false;
+    if (IsLeftBesideWorld(child, parent)) return false;
     if (rule.kept.count(name) > 0) return true;
     if (rule.unsaid.count(name) == 0 && !HasOnlyValues(parent.Name()))
       SayLeftOut(child, parent, rule);
@@ -149,6 +150,20 @@ class Pruner {
     notes_->Add("element",
                 fmt::format("<{}> more in a <{}> left out: the first counts", name, parent.Name()),
                 PlaceOf(child));
+    return true;
+  }
+
+  /// By a slip, behind </world>. One model stays, as the file may be an object's.
+  bool IsLeftBesideWorld(const XMLElement& child, const XMLElement& parent) {
+    const std::string name = child.Name();
+    if (parent.Name() != std::string("sdf") || parent.FirstChildElement("world") == nullptr)
+      return false;
+    if (name == "model") {
+      file_->models_beside_world.push_back(PlaceOf(child));
+      return file_->models_beside_world.size() > 1;
+    }
+    if (name != "include" && name != "frame" && name != "joint") return false;
+    NoteBesideWorld(name, PlaceOf(child), notes_);
     return true;
   }
 
@@ -328,6 +343,14 @@ void FillEmptyModel(XMLElement* model) {
     if (model->FirstChildElement(part) != nullptr) return;
   }
   Insert("link", "", model)->SetAttribute("name", "hires_nothing");
+}
+
+void NoteBesideWorld(const std::string& element, const std::string& place, LoadNotes* notes) {
+  notes->Add("element",
+             fmt::format("<{}> beside <world> left out, as it stands in no world (move it into "
+                         "<world>)",
+                         element),
+             place);
 }
 
 void PruneSdf(XMLElement* root, const std::string& path, SdfFile* file, LoadNotes* notes) {

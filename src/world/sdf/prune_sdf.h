@@ -25,8 +25,12 @@ constexpr char kShapePrefix[] = "hires:";       ///< <hires:cone> for <cone>, be
 /// of a newer SDF 1.x than libsdformat's becomes one of its newest, as only elements that both have
 /// are left.
 /// @param root  the <sdf> element.
-/// @param file  gets version, world_joints, num_worlds, num_models and model_name.
+/// @param file  gets version, world_joints, models_beside_world, num_worlds, num_models and
+/// model_name.
 void PruneSdf(tinyxml2::XMLElement* root, const std::string& path, SdfFile* file, LoadNotes* notes);
+
+/// Says of an element that stands beside <world>, where libsdformat passes it over in silence.
+void NoteBesideWorld(const std::string& element, const std::string& place, LoadNotes* notes);
 
 /// Gives a <model> that holds nothing a link, as libsdformat refuses it otherwise.
 void FillEmptyModel(tinyxml2::XMLElement* model);

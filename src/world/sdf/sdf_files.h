@@ -27,6 +27,8 @@ struct SdfFile {
   std::set<std::string> elements;               ///< names of all elements in `text`
   std::map<std::string, std::string> includes;  ///< URI -> file, of each <include> in `text`
   std::vector<WorldJoint> world_joints;
+  /// Places of the <model> elements beside a <world>, of which the first alone is in `text`.
+  std::vector<std::string> models_beside_world;
   int num_worlds{0}, num_models{0};  ///< that stand at its top, of `text`
   std::string model_name;            ///< of the first of these models
   long num_elements{0};              ///< of `text`, included files as often as they are included
