@@ -218,8 +218,9 @@ constexpr char kStill[] = "stands still, as an obstacle";
 
 /// Why physics cannot play a model as one body that can move.
 struct Obstacle {
-  std::string kind;  ///< of model, reads after "model"; "" if it can be played
-  std::string made;  ///< what is made of it
+  std::string kind;     ///< of model, reads after "model"; "" if it can be played
+  std::string made;     ///< what is made of it
+  std::string where{};  ///< "hall.world:12", if it is not the model's own place
 };
 
 /// Its mass is said, and its inertia to be that of its shapes.
@@ -229,8 +230,9 @@ bool LacksInertia(const PlacedLink& link) {
 
 /// @param is_object  it is meant to move: a mass alone will do.
 Obstacle WhyStill(const ModelLinks& model, Hold hold, bool is_object) {
-  if (model.has_moving_joint || hold == Hold::kJoint)
-    return {"with joints", "stands still where it is at joint zero, as an obstacle"};
+  constexpr char kAtZero[] = "stands still where it is at joint zero, as an obstacle";
+  if (!model.broken_joint.empty()) return {model.broken_joint, kAtZero, model.place_of_broken};
+  if (model.has_moving_joint || hold == Hold::kJoint) return {"with joints", kAtZero};
   std::set<int> groups;
   for (const PlacedLink& link : model.links) {
     if (HasShape(*link.link)) groups.insert(link.group);
@@ -395,7 +397,9 @@ PlayedModel PlayedModelOf(const sdf::Model& model, const geometry::Pose3& X_MB, 
   if (is_still) return played;
   const Obstacle obstacle = WhyStill(links, hold, false);
   if (!obstacle.kind.empty()) {
-    note(obstacle.kind + ": " + obstacle.made);
+    const std::string where = obstacle.where.empty() ? PlaceOf(model.Element()) : obstacle.where;
+    reading.notes->Add("model", obstacle.kind + ": " + obstacle.made,
+                       fmt::format("{} '{}'", where, model.Name()));
     return played;
   }
   try {

@@ -241,8 +241,7 @@ TEST_F(QuickSdfFileTest, WhatLibsdformatRefusesIsSaidWithItsFile) {
         std::string("<include><uri>model://mug</uri></include>"
                     "<include><uri>model://mug</uri></include>"),
         std::string("<frame name='f' attached_to='nowhere'/>"),
-        std::string("<model name='m'><link name='a'/><joint name='j' type='fixed'>"
-                    "<parent>a</parent><child>nothing</child></joint></model>")}) {
+        std::string("<model name='m'><link name='a'/><frame name='g' attached_to='g'/></model>")}) {
     const std::string path = Write(content);
     EXPECT_THAT(MessageOf<base::ConfigError>([&] { LoadWorld(path); }), HasSubstr("test.world"))
         << content;

@@ -216,6 +216,65 @@ TEST_F(WildWorldTest, WhatHasJointsStandsAtJointZeroAndIsSaidOnce) {
   EXPECT_THAT(log_, HasSubstr(world.notes[0]));
 }
 
+TEST_F(WildWorldTest, JointsThatJoinWhatIsNotThereLetTheModelStandStill) {
+  const std::string links =
+      Link("base", "0 0 0 0 0 0", Inertial(1, 1)) + "\n" + Link("camera", "0 0 1 0 0 0", "");
+  const auto expect = [&](const std::string& joints, const std::string& said, int line) {
+    for (const char* version : {"1.4", "1.6", "1.7", "1.9", "1.11"}) {
+      const World world = Load(Model("bot", links + joints), version);
+      EXPECT_TRUE(world.initial.objects.empty()) << joints;
+      ASSERT_EQ(world.statics.size(), 1u) << joints;
+      EXPECT_EQ(world.statics[0].collisions.size(), 2u);
+      EXPECT_EQ(base::Split(base::Join(world.notes, "\n"), '\n').size(),
+                version == std::string("1.11") ? 2u : 1u);
+      EXPECT_THAT(base::Join(world.notes, "\n"),
+                  AllOf(HasSubstr(said), HasSubstr("stands still where it is at joint zero"),
+                        HasSubstr(fmt::format("test.world:{} 'bot'", line))));
+    }
+  };
+  const std::string good = Joint("fixed", "base", "camera");
+  expect(good + "\n" + Joint("fixed", "camera", "rgb_camera"),
+         "1 model with a joint 'j_r' whose <child> 'rgb_camera' is not there (was 'camera' meant?)",
+         5);
+  expect(Joint("revolute", "bsae", "camera"), "whose <parent> 'bsae' is not there (was 'base'", 4);
+  expect("<joint name='j' type='fixed'><child>camera</child></joint>",
+         "with a joint 'j' without a <parent>", 4);
+  expect(Joint("fixed", "base", "base"), "from 'base' to 'base' itself", 4);
+  expect(Joint("fixed", "base", "x") + Joint("fixed", "base", "y") + Joint("fixed", "z", "base"),
+         "<child> 'x' is not there and 2 more such joints", 4);
+  expect("<model name='arm'><link name='tip'/></model>" + Joint("fixed", "base", "arm::tp"),
+         "<child> 'arm::tp' is not there", 4);
+}
+
+TEST_F(WildWorldTest, EndsOfJointsMayBeOtherThanLinks) {
+  const std::string hand = Model("hand", "<link name='palm'/>");
+  WriteModel("finger", Model("finger", "<link name='tip'/>"));
+  const std::string base = Link("base", "0 0 0 0 0 0", Inertial(1, 0.2));
+  for (const std::string& joints :
+       {hand + Joint("fixed", "base", "hand::palm"),
+        "<include><uri>model://finger</uri></include>" + Joint("fixed", "base", "finger::tip"),
+        "<include merge='true'><uri>model://finger</uri></include>" + Joint("fixed", "base", "tip"),
+        "<frame name='mark'/><link name='knob'/>" + Joint("fixed", "mark", "knob"),
+        hand + Joint("fixed", "__model__", "hand")}) {
+    const World world = Load(Model("bot", base + joints), "1.9");
+    EXPECT_EQ(world.initial.objects.size(), 1u) << joints;
+    EXPECT_THAT(world.notes, IsEmpty()) << joints;
+  }
+}
+
+TEST_F(WildWorldTest, OfWhatIsStaticByItsIncludeBrokenJointsNeedNoWord) {
+  WriteModel("bot", Model("bot", Link("base", "0 0 0 0 0 0", "") + Joint("fixed", "base", "x")));
+  const std::string include = "<include><uri>model://bot</uri>{}<name>b{}</name></include>\n";
+  const World still = Load(fmt::format(fmt::runtime(include), "<static>true</static>", 1));
+  EXPECT_EQ(still.statics.size(), 1u);
+  EXPECT_THAT(still.notes, IsEmpty());
+  const World loose =
+      Load(fmt::format(fmt::runtime(include), "", 1) + fmt::format(fmt::runtime(include), "", 2));
+  EXPECT_EQ(loose.statics.size(), 2u);
+  EXPECT_THAT(loose.notes, ElementsAre(AllOf(HasSubstr("2 models with a joint 'j_x'"),
+                                             HasSubstr("bot/model.sdf:2 'b1'"))));
+}
+
 TEST_F(WildWorldTest, JointsOfTheWorldHoldModels) {
   const std::string post = Link("l", "0 0 0 0 0 0", kBadInertial);
   const auto joint = [](const std::string& type, const std::string& a, const std::string& b) {
@@ -634,8 +693,10 @@ TEST_F(WildWorldTest, JointsOfWhatStandsAreNotLookedAt) {
   EXPECT_EQ(
       Load(Model("a", "<static>1</static>" + Link("l", "0 0 0 0 0 0", "") + joint)).statics.size(),
       1u);
-  EXPECT_THAT(ErrorOf(Model("a", Link("l", "0 0 0 0 0 0", Inertial(1, 1)) + joint)),
-              HasSubstr("gone"));
+  EXPECT_THAT(
+      ErrorOf(Model("a", Link("l", "0 0 0 0 0 0", Inertial(1, 1)) + joint +
+                             "<frame name='f'><pose relative_to='j_g'>0 0 1 0 0 0</pose></frame>")),
+      AllOf(HasSubstr("relative_to of a <pose>: name 'j_g' is unknown"), HasSubstr("'gone'")));
   const World world =
       Load(Model("a", "<static>1</static>" + Link("l", "0 0 0 0 0 0", "") +
                           "<joint name='j' type='fixed'><pose>3 0 0 0 0 0</pose>"

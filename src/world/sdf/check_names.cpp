@@ -7,6 +7,7 @@
 #include <set>
 #include <vector>
 
+#include "hires/base/spelling.h"
 #include "hires/base/text.h"
 #include "world/sdf/prune_sdf.h"
 
@@ -35,6 +36,24 @@ class NamesChecker {
           kind, name, first->second,
           child->Name() == std::string("include") ? "give it a <name> of its own" : "rename one"));
       Rename(name, child);
+    }
+  }
+
+  /// A joint whose ends are not there becomes a kBrokenJoint with the reason, for libsdformat
+  /// would refuse the whole file for it.
+  void CheckJoints() {
+    if (is_open_) return;  // a merged model brings names
+    for (XMLElement* child = scope_->FirstChildElement(); child != nullptr;
+         child = child->NextSiblingElement()) {
+      if (child->Name() != std::string("joint")) continue;
+      for (const char* end : {"parent", "child"}) TakeFirstLink(child->FirstChildElement(end));
+      const std::string why = WhyBroken(*child);
+      if (why.empty()) continue;
+      names_.erase(NameOf(*child));
+      child->DeleteChildren();
+      child->SetName(kBrokenJoint);
+      child->SetText(why.c_str());
+      child->SetAttribute(kPlace, fmt::format("{}:{}", path_, child->GetLineNum()).c_str());
     }
   }
 
@@ -82,6 +101,57 @@ class NamesChecker {
     own->SetText(other.c_str());
   }
 
+  /// For the model's own frame, which lies on its canonical link, as libsdformat takes no such end.
+  void TakeFirstLink(XMLElement* end) const {
+    if (TrimmedText(end) != "__model__") return;
+    const char* canonical = scope_->Attribute("canonical_link");
+    const std::vector<std::string> links = LinksIn(*scope_);
+    if (canonical == nullptr && links.empty()) return;
+    end->SetText(canonical != nullptr ? canonical : links.front().c_str());
+  }
+
+  /// Reads after "with a joint 'hinge' "; "" if both ends are there.
+  std::string WhyBroken(const XMLElement& joint) const {
+    std::string ends[2];
+    for (const bool is_child : {false, true}) {
+      const char* end = is_child ? "child" : "parent";
+      std::string& name = ends[is_child];
+      name = TrimmedText(joint.FirstChildElement(end));
+      if (name.empty()) return fmt::format("without a <{}>", end);
+      if (!IsThere(name, *scope_)) {
+        const std::vector<std::string> likely = base::LikelyNames(name, LinksIn(*scope_));
+        return fmt::format("whose <{}> '{}' is not there{}", end, name,
+                           likely.empty() ? "" : " (was '" + likely.front() + "' meant?)");
+      }
+    }
+    return ends[0] == ends[1] ? fmt::format("from '{0}' to '{0}' itself", ends[0]) : "";
+  }
+
+  /// What joints connect: links, models, frames, and what is in models ("cabinet::box").
+  bool IsThere(const std::string& name, const XMLElement& scope) const {
+    if (name == "world" || name.rfind("__", 0) == 0) return true;
+    const std::size_t cut = name.find("::");
+    const std::string first = name.substr(0, cut);
+    for (const auto* child = scope.FirstChildElement(); child != nullptr;
+         child = child->NextSiblingElement()) {
+      if (child->FirstChildElement(kMerged) != nullptr) return true;  // brings names
+      const std::string own = NameOf(*child);
+      if (own == name) return true;
+      if (cut == std::string::npos || own != first) continue;
+      return child->Name() != std::string("model") || IsThere(name.substr(cut + 2), *child);
+    }
+    return false;
+  }
+
+  static std::vector<std::string> LinksIn(const XMLElement& model) {
+    std::vector<std::string> names;
+    for (const auto* link = model.FirstChildElement("link"); link != nullptr;
+         link = link->NextSiblingElement("link")) {
+      if (const char* name = link->Attribute("name")) names.push_back(name);
+    }
+    return names;
+  }
+
   void CheckPose(XMLElement* element) {
     if (XMLElement* pose = element->FirstChildElement("pose")) Check(pose, "relative_to");
   }
@@ -116,6 +186,7 @@ void CheckNames(XMLElement* scope, const std::string& path, const std::string& v
   if (kind != "world" && kind != "model") return;
   NamesChecker checker(scope, path, name_of_file, notes);
   checker.CheckEqualNames();
+  if (kind == "model") checker.CheckJoints();
   int minor = 0;
   constexpr int kFirst = 7;  // SDF 1.7 has relative_to
   if (std::sscanf(version.c_str(), "1.%d", &minor) == 1 && minor >= kFirst)

@@ -1,5 +1,7 @@
 #include "world/sdf/model_links.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <functional>
 #include <map>
@@ -40,6 +42,7 @@ class Collector {
       Visit(inner, X_MModel * PoseIn(inner.SemanticPose(), "__model__", Where(inner), kMaxWritten),
             prefix + inner.Name() + "::", is_static);
     }
+    if (!is_static) TakeBrokenJoints(model);
     for (std::uint64_t i = 0; i < model.JointCount(); ++i) {
       VisitJoint(*model.JointByIndex(i), prefix, is_static);
     }
@@ -65,6 +68,20 @@ class Collector {
   ModelLinks result;
 
  private:
+  void TakeBrokenJoints(const sdf::Model& model) {
+    if (!result.broken_joint.empty() || !model.Element()->HasElement(kBrokenJoint)) return;
+    const sdf::ElementPtr first = model.Element()->GetElement(kBrokenJoint);
+    int num_more = 0;
+    for (auto at = first->GetNextElement(kBrokenJoint); at != nullptr;
+         at = at->GetNextElement(kBrokenJoint)) {
+      ++num_more;
+    }
+    result.broken_joint = fmt::format(
+        "with a joint '{}' {}{}", first->Get<std::string>("name"), first->Get<std::string>(),
+        num_more == 0 ? "" : fmt::format(" and {} more such joints", num_more));
+    result.place_of_broken = first->Get<std::string>(kPlace);
+  }
+
   void VisitJoint(const sdf::Joint& joint, const std::string& prefix, bool is_static) {
     if (is_static) return;
     std::string parent, child;

@@ -20,6 +20,9 @@ struct PlacedLink {
 struct ModelLinks {
   std::vector<PlacedLink> links;
   bool has_moving_joint{false};
+  /// "with a joint 'hinge' whose <child> ...", of the first that joins what is not there; or "".
+  std::string broken_joint;
+  std::string place_of_broken;  ///< "hall.world:12"
 };
 
 /// @throws base::ConfigError if a pose or a joint names what is not there.

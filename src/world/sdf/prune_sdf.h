@@ -16,8 +16,12 @@ constexpr char kDensity[] = "hires:density";    ///< of a <collision>
 constexpr char kVisual[] = "hires:visual";      ///< there if the link has a <visual>
 constexpr char kFloats[] = "hires:floats";      ///< the link is <kinematic> or without gravity
 constexpr char kJointType[] = "hires:type";     ///< of a <joint>, which is "fixed" for libsdformat
-constexpr char kMerged[] = "hires:merged";      ///< of an <include merge="true">
-constexpr char kShapePrefix[] = "hires:";       ///< <hires:cone> for <cone>, beside <empty/>
+/// A <joint> whose ends are not there; its text says what is wrong (CheckNames), kPlace where, as
+/// libsdformat keeps no lines of such elements.
+constexpr char kBrokenJoint[] = "hires:broken_joint";
+constexpr char kPlace[] = "hires_place";
+constexpr char kMerged[] = "hires:merged";  ///< of an <include merge="true">
+constexpr char kShapePrefix[] = "hires:";   ///< <hires:cone> for <cone>, beside <empty/>
 
 /// Leaves only what is read of an SDF file: models, links, collisions, joints, frames, includes and
 /// what places them. Lights, plugins, sensors, looks and the like go without a word; what could
