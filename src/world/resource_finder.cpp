@@ -209,7 +209,7 @@ std::string ResourceFinder::FindByScheme(const std::string& uri, const std::stri
 }
 
 /// A path without a scheme, or file://media/... of old worlds: beside the file, else below a folder
-/// of the model path.
+/// of the model path, whose own name the path may begin with (file://models/crate/...).
 std::string ResourceFinder::FindBeside(const std::string& uri, const std::string& from_file,
                                        const std::string& where) const {
   const std::string name = StartsWith(uri, "file://") ? uri.substr(7) : uri;
@@ -223,12 +223,17 @@ std::string ResourceFinder::FindBeside(const std::string& uri, const std::string
         where, uri));
   }
   if (base::Exists(path)) return path.string();
+  fs::path nearest = path;  // to what may be meant
   for (const std::string& root : model_folders_) {
-    if (!Climbs(name) && base::Exists(fs::path(root) / name))
-      return (fs::path(root) / name).string();
+    if (Climbs(name)) break;
+    const fs::path inside = fs::path(root) / name, beside = fs::path(root).parent_path() / name;
+    if (base::Exists(inside)) return inside.string();
+    if (!IsBelow(beside, root)) continue;
+    if (base::Exists(beside)) return beside.string();
+    if (base::IsFolder(beside.parent_path())) nearest = beside;
   }
   throw base::ConfigError(fmt::format("{}: '{}' is not there; looked for {}{}", where, uri,
-                                      path.string(), NearestFile(path.string())));
+                                      nearest.string(), NearestFile(nearest.string())));
 }
 
 std::string ResourceFinder::Find(const std::string& uri, const std::string& where,

@@ -27,8 +27,8 @@ class ResourceFinder {
   std::string FindModel(const std::string& uri, const std::string& where,
                         const std::string& from_file) const;
 
-  /// The file of a mesh. A path without a scheme is relative to `from_file`, and must end below the
-  /// folder of that file or below a model folder.
+  /// The file of a mesh. A path without a scheme is relative to `from_file`, a model folder or the
+  /// parent of one, and must end below the folder of that file or below a model folder.
   /// @throws base::ConfigError as FindModel.
   std::string FindMesh(const std::string& uri, const std::string& from_file,
                        const std::string& where) const;

@@ -838,6 +838,30 @@ TEST_F(WildWorldTest, ModelsBesideWorldsAreFound) {
       << "models of another package";
 }
 
+TEST_F(WildWorldTest, AddressesThatBeginWithTheModelFolderAreFound) {
+  folder_.Write("package/models/crate/meshes/two.obj", kTwoCubes);
+  folder_.Write("package/secret/two.obj", kTwoCubes);
+  for (const std::string place : {"package/worlds/a.world", "package/worlds/indoor/a.world"}) {
+    const auto load = [&](const std::string& uri) {
+      WriteModel("crate",
+                 StaticModel("crate", LinkWithShape("<mesh><uri>\n" + uri + "\n</uri></mesh>")),
+                 "package/models");
+      return LoadWorld(
+          folder_.Write(place, WorldText("<include><uri>model://crate</uri></include>")));
+    };
+    const std::uint64_t hash = load("model://crate/meshes/two.obj").hash;
+    for (const char* uri : {"file://models/crate/meshes/two.obj", "models/crate/meshes/two.obj",
+                            "file://crate/meshes/two.obj"}) {
+      EXPECT_EQ(load(uri).hash, hash) << uri;
+    }
+    EXPECT_THAT(MessageOf<base::ConfigError>([&] { load("file://models/crate/meshes/tow.obj"); }),
+                AllOf(HasSubstr("'file://models/crate/meshes/tow.obj' is not there"),
+                      HasSubstr("two.obj'?")));
+    for (const char* uri : {"file://secret/two.obj", "file://models/../secret/two.obj"})
+      EXPECT_THROW(load(uri), base::ConfigError) << uri;
+  }
+}
+
 TEST_F(WildWorldTest, GazebosVariablesAndCachesAreLookedThrough) {
   WriteModel("crate", StaticModel("crate", LinkWithShape(kUnitBox)), "elsewhere");
   WriteModel("2", StaticModel("seat", LinkWithShape(kUnitBox)),
