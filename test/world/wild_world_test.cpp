@@ -755,6 +755,46 @@ TEST_F(WildWorldTest, EscapesInAddressesAreRead) {
               HasSubstr("is not there"));
 }
 
+TEST_F(WildWorldTest, FramesOfPosesCountUpToSdf16AndAreToldOfLater) {
+  const auto load = [&](const std::string& frame, const std::string& version) {
+    const std::string pose = "<pose frame='" + frame + "'>";
+    return Load(StaticModel("room",
+                            "<link name='a'><pose>0 3 0 0 0 0</pose></link>\n"
+                            "<link name='b'>" +
+                                pose +
+                                "1 0 0 0 0 0</pose>"
+                                "<collision name='c'>" +
+                                pose + "0 0 1 0 0 0</pose><geometry>" + kUnitBox +
+                                "</geometry></collision></link>"),
+                version);
+  };
+  const auto place_of = [](const World& world) {
+    return world.statics.at(0).collisions.at(0).X_BS.translation;
+  };
+  for (const char* version : {"1.4", "1.6", "1.7", "1.8", "1.9"}) {
+    const World world = load("", version);
+    EXPECT_THAT(world.notes, IsEmpty()) << version;
+    EXPECT_EQ(log_, "") << version;
+    EXPECT_TRUE(place_of(world).isApprox(Eigen::Vector3d(1, 0, 1))) << version;
+  }
+  for (const char* version : {"1.7", "1.8", "1.9"}) {
+    const World world = load("a", version);
+    EXPECT_THAT(world.notes, ElementsAre(AllOf(HasSubstr("2 poses whose attribute frame is passed"),
+                                               HasSubstr("relative_to"), HasSubstr("first"),
+                                               HasSubstr("test.world:4"))));
+    EXPECT_THAT(log_, Not(HasSubstr("sdformat=")));
+    EXPECT_TRUE(place_of(world).isApprox(Eigen::Vector3d(1, 0, 1))) << version;
+  }
+  const World old =
+      Load(StaticModel("room",
+                       "<link name='a'><pose>0 3 0 0 0 0</pose></link><link name='b'>"
+                       "<pose frame='a'>1 0 0 0 0 0</pose><collision name='c'><geometry>" +
+                           std::string(kUnitBox) + "</geometry></collision></link>"),
+           "1.6");
+  EXPECT_THAT(old.notes, IsEmpty());
+  EXPECT_TRUE(place_of(old).isApprox(Eigen::Vector3d(1, 3, 0)));
+}
+
 TEST_F(WildWorldTest, GravityOfOldWorldsIsRead) {
   EXPECT_EQ(Load("<physics type='ode'><gravity>0 0 -1.6</gravity></physics>", "1.5").gravity, 1.6);
 }

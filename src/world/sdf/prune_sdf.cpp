@@ -218,6 +218,7 @@ class Pruner {
     TakeOldOrigin(element);
     CheckValueOf(element, path_, notes_);
     if (name == "sdf") TakeVersion(element);
+    if (name == "pose") TakeOldFrame(element);
     if (name == "world") TakeOldGravity(element);
     if (name == "link") {
       MendCollisions(element, path_, notes_);
@@ -269,10 +270,29 @@ class Pruner {
     origin->DeleteAttribute("pose");
   }
 
+  /// Up to SDF 1.6 poses count from a `frame`, which libsdformat turns into relative_to; later it
+  /// passes the attribute over, and warns of each.
+  void TakeOldFrame(XMLElement* pose) {
+    const char* frame = pose->Attribute("frame");
+    if (frame == nullptr || IsUpTo(6)) return;
+    if (*frame != '\0') {
+      notes_->Add(
+          "pose",
+          "whose attribute frame is passed over, as SDF has none from 1.7 on: it counts from "
+          "its relative_to, else from what it stands in (write relative_to if it is meant)",
+          PlaceOf(*pose));
+    }
+    pose->DeleteAttribute("frame");
+  }
+
+  bool IsUpTo(int last_minor) const {
+    int minor = 0;
+    return std::sscanf(file_->version.c_str(), "1.%d", &minor) == 1 && minor <= last_minor;
+  }
+
   /// Up to SDF 1.5 gravity stands in <physics>.
   void TakeOldGravity(XMLElement* world) const {
-    int minor = 0;
-    if (std::sscanf(file_->version.c_str(), "1.%d", &minor) != 1 || minor > 5) return;
+    if (!IsUpTo(5)) return;
     const XMLElement* physics = world->FirstChildElement("physics");
     const XMLElement* gravity =
         physics == nullptr ? nullptr : physics->FirstChildElement("gravity");
