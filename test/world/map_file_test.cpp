@@ -170,6 +170,15 @@ TEST_F(MapFileTest, OtherKindsOfFilesAreNamed) {
               HasSubstr("--world"));
   EXPECT_THAT(MessageOf<base::ConfigError>([&] { Load("<robot name='a'/>"); }),
               HasSubstr("--robot takes it"));
+  const std::string parameters = "map_server:\n  ros__parameters:\n    yaml_filename: ";
+  for (const std::string before : {"", "amcl:\n  ros__parameters: {alpha1: 0.2}\n"}) {
+    EXPECT_THAT(
+        MessageOf<base::ConfigError>([&] { Load(before + parameters + "\"hall.yaml\"\n"); }),
+        AllOf(HasSubstr(before.empty() ? ":3: " : ":5: "), HasSubstr("parameters of a map_server"),
+              HasSubstr("give 'hall.yaml'")));
+  }
+  EXPECT_THAT(MessageOf<base::ConfigError>([&] { Load(parameters + "''\n"); }),
+              HasSubstr("is empty, as a launch file names the map"));
 }
 
 TEST_F(MapFileTest, ForeignKeysArePassedOverWithOneWarning) {

@@ -1028,6 +1028,18 @@ TEST_F(WildWorldTest, AFileOfAnotherKindIsToldByItsKind) {
   EXPECT_THAT(error_of("m.dae", "<?xml version='1.0'?><COLLADA/>"), HasSubstr("a mesh"));
   EXPECT_THAT(error_of("a.bag", "#ROSBAG V2.0\n"), HasSubstr("a bag"));
   EXPECT_THAT(error_of("model.sdf", ModelFile(LooseCube("a"))), HasSubstr("--object"));
+  EXPECT_THAT(error_of("w.wbt", "#VRML_SIM R2023b utf8\nWorldInfo { basicTimeStep 20 }\n"),
+              AllOf(HasSubstr("a world of Webots"), HasSubstr("SDF"), HasSubstr("--map")));
+  for (const std::string stage :
+       {"# cave.world - Authors: A <a@b.org>\ndefine hokuyo ranger ( sensor( range [ 0.0 5.0 ] ) "
+        ")\n",
+        "include \"map.inc\"\r\nfloorplan\r\n(\r\n  bitmap \"cave.png\"\r\n)\r\n",
+        "\n  window( size [ 635 666 ] )\n"}) {
+    EXPECT_THAT(error_of("w.world", stage),
+                AllOf(HasSubstr("a world of Stage"), HasSubstr("bitmap"), HasSubstr("--map")));
+  }
+  for (const std::string other : {"a text of models (and more)\n", "window: (1)\n", "window 3\n"})
+    EXPECT_THAT(error_of("w.world", other), Not(HasSubstr("Stage")));
   EXPECT_THAT(error_of("x.launch", "<launch/>"), HasSubstr("a launch file"));
   const std::string box = StaticModel("b", LinkWithShape(kUnitBox));
   EXPECT_THAT(error_of("e.sdf", WorldText("{% for i in range(3) %}" + box + "{% endfor %}")),

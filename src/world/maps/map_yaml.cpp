@@ -279,6 +279,32 @@ void RefuseOtherKinds(const std::string& path, const std::string& bytes) {
                                       is_robot ? "--robot" : "--world, if it is a world,"));
 }
 
+/// The entry "yaml_filename" of a map_server's parameters, which stand below its name.
+/// @param num_left  nodes that are looked at, as an alias may stand for many.
+std::optional<YAML::const_iterator> YamlFilenameIn(const YAML::Node& node, int* num_left) {
+  if (!node.IsMap()) return std::nullopt;
+  for (auto entry = node.begin(); entry != node.end(); ++entry) {
+    if (--*num_left < 0) return std::nullopt;
+    if (entry->first.IsScalar() && entry->first.Scalar() == "yaml_filename") return entry;
+    if (const auto found = YamlFilenameIn(entry->second, num_left)) return found;
+  }
+  return std::nullopt;
+}
+
+void RefuseParameters(const std::string& path, const YAML::Node& document) {
+  if (document["image"]) return;
+  int num_left = 10'000;
+  const auto found = YamlFilenameIn(document, &num_left);
+  if (!found) return;
+  const YAML::Node name = (*found)->second;
+  const bool is_named = name.IsScalar() && !name.Scalar().empty();
+  throw base::ConfigError(
+      fmt::format("{}:{}: has parameters of a map_server and is no map; its yaml_filename {}", path,
+                  (*found)->first.Mark().line + 1,
+                  is_named ? fmt::format("names the map: give '{}'", name.Scalar())
+                           : "is empty, as a launch file names the map: give that"));
+}
+
 YAML::Node ParseYaml(const std::string& path, const std::string& bytes) {
   try {
     const std::vector<YAML::Node> documents = YAML::LoadAll(bytes);
@@ -300,7 +326,9 @@ MapParams ReadMapYaml(const std::string& yaml_path, MapFindings* findings) {
   RefusePicture(yaml_path);
   const std::string bytes = base::ReadTextFile(yaml_path, 1u << 20);
   RefuseOtherKinds(yaml_path, bytes);
-  return MapYamlReader(yaml_path, ParseYaml(yaml_path, bytes), findings).Read();
+  const YAML::Node document = ParseYaml(yaml_path, bytes);
+  RefuseParameters(yaml_path, document);
+  return MapYamlReader(yaml_path, document, findings).Read();
 }
 
 void ThrowErrors(const std::string& file, const MapFindings& findings) {

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <map>
 #include <set>
@@ -56,6 +57,9 @@ std::string WhyNoWorldByBytes(const std::string& text, const std::string& path) 
   }
   if (Begins(text, "#ROSBAG"))
     return Is(path, "a bag", "`hires map` makes a map of one, to be given with --map");
+  if (Begins(text, "#VRML_SIM"))
+    return Is(path, "a world of Webots",
+              "write what stands in it as SDF, or give a map with --map");
   if (Begins(text, "glTF") || Begins(text, "Kaydara FBX"))
     return Is(path, "a mesh", "put it into a <static> model of a world, as its <collision>");
   return "";
@@ -104,6 +108,23 @@ std::string WhyNoWorldByKeys(const std::string& text, const std::string& path) {
   return "";
 }
 
+/// Stage writes words with values, blocks in parentheses, and comments from # on.
+bool IsOfStage(const std::string& text) {
+  static const std::set<std::string> words{"define",   "include",    "window", "floorplan",
+                                           "position", "resolution", "model",  "interval_sim"};
+  bool has_word = false, has_block = false;
+  for (const std::string& line : base::Split(text, '\n')) {
+    const std::string code = line.substr(0, line.find('#'));
+    if (code.find_first_of("<:") != std::string::npos) return false;
+    has_block = has_block || Holds(code, "(");
+    const std::size_t first = code.find_first_not_of(" \t");
+    if (first == std::string::npos) continue;
+    const std::size_t end = std::min(code.find_first_of(" \t(\r", first), code.size());
+    has_word = has_word || words.count(code.substr(first, end - first)) > 0;
+  }
+  return has_word && has_block;
+}
+
 std::string WhyNoWorldByEnding(const std::string& path) {
   static const std::set<std::string> meshes{".stl",  ".dae", ".obj", ".ply",  ".glb",
                                             ".gltf", ".fbx", ".off", ".blend"};
@@ -127,6 +148,11 @@ std::string WhyNoWorld(const std::string& text, const std::string& path) {
   const std::size_t first = text.find_first_not_of(" \t\r\n\xEF\xBB\xBF");
   const bool is_xml = first != std::string::npos && text[first] == '<';
   if (why.empty() && !is_xml) why = WhyNoWorldByKeys(text, path);
+  if (why.empty() && !is_xml && IsOfStage(text)) {
+    why = Is(path, "a world of Stage",
+             "its floorplan's bitmap is a map: write a YAML file of map_server for it, and give "
+             "that with --map");
+  }
   if (why.empty() && !is_xml && first != std::string::npos) why = WhyNoWorldByEnding(path);
   return why;
 }
