@@ -227,6 +227,7 @@ class AreaReader {
           fmt::format("{}:{}: is too deep or too long for a file of goals", path_, LineOf(node)));
     }
     if (!node.IsMap()) return WalkInside(node, name, depth);
+    if (area_keys::IsGeoJson(node)) return WalkGeoJson(node);
     CheckFrame(node);
     const double outer = unit_;
     const int num_before = num_goals_;
@@ -243,6 +244,31 @@ class AreaReader {
       unit.is_of_angles ? Fail(LineOf(unit.said), what) : Note(LineOf(unit.said), what);
     }
     unit_ = outer;
+  }
+
+  /// Its points, as of Nav2's graphs of routes; the lines between them are no goals.
+  void WalkGeoJson(const YAML::Node& collection) {
+    const auto part = [](const YAML::Node& node, const char* key) {
+      return node.IsMap() ? Find(node, {key}) : YAML::Node(YAML::NodeType::Undefined);
+    };
+    for (const YAML::Node& feature : Find(collection, {"features"})) {
+      const YAML::Node form = part(feature, "geometry"), kind = part(form, "type");
+      const std::string name = kind && kind.IsScalar() ? kind.Scalar() : "features";
+      const int line = LineOf(feature);
+      if (name != "Point") {
+        passed_parts_.Add(name, line);
+        continue;
+      }
+      const std::vector<double> p = NumbersOf(part(form, "coordinates"));
+      if (p.size() != 2 && p.size() != 3) {
+        Fail(line, "a Point without coordinates in numbers, wanted [x, y] [m]");
+        continue;
+      }
+      Note(line, "coordinates of GeoJSON are taken for metres in the map");
+      const YAML::Node properties = part(feature, "properties");
+      Keep(properties.IsMap() ? area_keys::NameIn(properties) : "", line,
+           Pose(line, p[0], p[1], std::nullopt));
+    }
   }
 
   void WalkInside(const YAML::Node& node, const std::string& name, int depth) {

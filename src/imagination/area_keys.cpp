@@ -222,6 +222,12 @@ std::string NameIn(const YAML::Node& map) {
   return "";
 }
 
+bool IsGeoJson(const YAML::Node& map) {
+  const YAML::Node type = Find(map, {"type"}), features = Find(map, {"features"});
+  return type && type.IsScalar() && type.Scalar() == "FeatureCollection" && features &&
+         features.IsSequence();
+}
+
 YAML::Node FrameIn(const YAML::Node& map) {
   const YAML::Node header = Find(map, {"header"});
   const YAML::Node frame = Find(header && header.IsMap() ? header : map, kFrames);

@@ -35,6 +35,9 @@ int CountNumbers(const YAML::Node& scalar);
 /// Name, label, room and the like that stand beside a pose; or empty.
 std::string NameIn(const YAML::Node& map);
 
+/// Whether it is a collection of GeoJSON, which has goals as "features".
+bool IsGeoJson(const YAML::Node& map);
+
 /// A frame beside or in the header.
 YAML::Node FrameIn(const YAML::Node& map);
 

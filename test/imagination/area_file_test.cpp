@@ -507,6 +507,42 @@ TEST_F(AreaFileTest, ListsSideBySideAreGoals) {
               AllOf(HasSubstr("goals.yaml:1: 'goals_x'"), HasSubstr("2, 3 and 2 numbers")));
 }
 
+TEST_F(AreaFileTest, PointsOfGeoJsonAreGoals) {
+  const std::string head =
+      "{\n\"type\": \"FeatureCollection\", \"name\": \"graph\", \"crs\": {\"type\": \"name\", "
+      "\"properties\": {\"name\": \"urn:ogc:def:crs:EPSG::3857\"}},\n\"features\": [\n";
+  const auto feature = [](const std::string& properties, const std::string& kind,
+                          const std::string& coordinates) {
+    return fmt::format(
+        "{{\"type\": \"Feature\", \"properties\": {}, \"geometry\": {{\"type\": \"{}\", "
+        "\"coordinates\": {}}}}}",
+        properties, kind, coordinates);
+  };
+  const LogCatcher log(base::LogLevel::kWarn);
+  const auto areas = Read(head + feature("{\"id\": 1}", "Point", "[-0.6, -1.6]") + ",\n" +
+                          feature("{\"name\": \"dock\", \"id\": 2}", "Point", "[0.6, -1.6, 0.0]") +
+                          ",\n" + feature("null", "Point", "[3, 4]") + ",\n" +
+                          feature("{\"id\": 21, \"startid\": 1, \"endid\": 2}", "MultiLineString",
+                                  "[[[-0.6, -1.6], [0.6, -1.6]]]") +
+                          "]}\n");
+  ASSERT_EQ(areas.size(), 3u);
+  ExpectArea(areas[0], "1", -0.6, -1.6, 0.0);
+  ExpectArea(areas[1], "dock", 0.6, -1.6, 0.0);
+  ExpectArea(areas[2], "goal1", 3.0, 4.0, 0.0);
+  EXPECT_THAT(log.lines, testing::UnorderedElementsAre(
+                             AllOf(HasSubstr("goals.yaml:4:"), HasSubstr("taken for metres"),
+                                   HasSubstr("3 in all")),
+                             AllOf(HasSubstr("yaw of 0"), HasSubstr("3 in all")),
+                             AllOf(HasSubstr("goals.yaml:7:"), HasSubstr("'MultiLineString'"))));
+  EXPECT_THAT(ErrorOf(head + feature("{\"id\": 1}", "Point", "[1, \"b\"]") + "]}\n"),
+              AllOf(HasSubstr("goals.yaml:4:"), HasSubstr("wanted [x, y] [m]")));
+  EXPECT_THAT(ErrorOf(head + "]}\n"), HasSubstr("has no goal"));
+  EXPECT_THAT(
+      ErrorOf(head +
+              "[1, 2], 3, null, {}, {\"geometry\": [1]}, {\"geometry\": {\"type\": [1]}}]}\n"),
+      HasSubstr("has no goal"));
+}
+
 TEST_F(AreaFileTest, WhatIsNoTurnOnTheFloorIsRefused) {
   for (const char* yaml : {"a: [1.0, 0.5, 0.0, 2.0, -0.5, 1.57, 0.0]\n",
                            "a: [1, 2, 0, 0, 0, 0, 0]\n", "a: {x: 1, y: 2, z: 0.1, w: 0.7}\n"}) {
