@@ -71,6 +71,13 @@ std::vector<Oddity> Oddities() {
       {"inertia of a larger body", false,
        [](Name n) { return Loose(n, Body("l", kPlaceholder, kUnitBox)); }, "%s"},
       {"hinge", false, [](Name n) { return Jointed(n, "revolute", kBad); }, "%s"},
+      {"joint to nothing", false,
+       [](Name n) {
+         return Loose("m_" + n, Body("a", kGood, kUnitBox) +
+                                    "<joint name='j' type='fixed'><parent>a</parent><child>gone_" +
+                                    n + "</child></joint>");
+       },
+       "'gone_%s' is not there"},
       {"no mass", false, [](Name n) { return Loose(n, Body("l", "", kUnitBox)); }, "%s"},
       {"parts", false,
        [](Name n) { return Loose(n, Body("a", kGood, kUnitBox) + Body("b", kGood, kUnitBox)); },

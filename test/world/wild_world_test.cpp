@@ -239,22 +239,29 @@ TEST_F(WildWorldTest, JointsThatJoinWhatIsNotThereLetTheModelStandStill) {
   expect(Joint("revolute", "bsae", "camera"), "whose <parent> 'bsae' is not there (was 'base'", 4);
   expect("<joint name='j' type='fixed'><child>camera</child></joint>",
          "with a joint 'j' without a <parent>", 4);
+  expect("<joint type='fixed'><child>camera</child></joint>", "with a joint without a <parent>", 4);
   expect(Joint("fixed", "base", "base"), "from 'base' to 'base' itself", 4);
   expect(Joint("fixed", "base", "x") + Joint("fixed", "base", "y") + Joint("fixed", "z", "base"),
          "<child> 'x' is not there and 2 more such joints", 4);
   expect("<model name='arm'><link name='tip'/></model>" + Joint("fixed", "base", "arm::tp"),
          "<child> 'arm::tp' is not there", 4);
+  WriteModel("hand", Model("hand", "<link name='palm'/>"));
+  expect("<include><uri>model://hand</uri></include>" + Joint("fixed", "base", "hand::plam"),
+         "<child> 'hand::plam' is not there", 4);
 }
 
 TEST_F(WildWorldTest, EndsOfJointsMayBeOtherThanLinks) {
   const std::string hand = Model("hand", "<link name='palm'/>");
   WriteModel("finger", Model("finger", "<link name='tip'/>"));
+  WriteModel("wrist", Model("wrist", "<include><uri>model://finger</uri></include>"));
   const std::string base = Link("base", "0 0 0 0 0 0", Inertial(1, 0.2));
   for (const std::string& joints :
        {hand + Joint("fixed", "base", "hand::palm"),
         "<include><uri>model://finger</uri></include>" + Joint("fixed", "base", "finger::tip"),
         "<include merge='true'><uri>model://finger</uri></include>" + Joint("fixed", "base", "tip"),
         "<frame name='mark'/><link name='knob'/>" + Joint("fixed", "mark", "knob"),
+        "<include><uri>model://wrist</uri></include>" +
+            Joint("fixed", "base", "wrist::finger::tip"),
         hand + Joint("fixed", "__model__", "hand")}) {
     const World world = Load(Model("bot", base + joints), "1.9");
     EXPECT_EQ(world.initial.objects.size(), 1u) << joints;

@@ -7,6 +7,7 @@
 #include <set>
 #include <vector>
 
+#include "hires/base/short_text.h"
 #include "hires/base/spelling.h"
 #include "hires/base/text.h"
 #include "world/sdf/prune_sdf.h"
@@ -19,8 +20,8 @@ using tinyxml2::XMLElement;
 class NamesChecker {
  public:
   NamesChecker(XMLElement* scope, const std::string& path,
-               const std::function<std::string(const XMLElement&)>& name_of_file, LoadNotes* notes)
-      : scope_(scope), path_(path), name_of_file_(name_of_file), notes_(notes) {}
+               const std::function<const SdfFile&(const XMLElement&)>& file_of, LoadNotes* notes)
+      : scope_(scope), path_(path), file_of_(file_of), notes_(notes) {}
 
   void CheckEqualNames() {
     for (XMLElement* child = scope_->FirstChildElement(); child != nullptr;
@@ -49,10 +50,13 @@ class NamesChecker {
       for (const char* end : {"parent", "child"}) TakeFirstLink(child->FirstChildElement(end));
       const std::string why = WhyBroken(*child);
       if (why.empty()) continue;
-      names_.erase(NameOf(*child));
+      const std::string name = NameOf(*child);
+      names_.erase(name);
       child->DeleteChildren();
       child->SetName(kBrokenJoint);
-      child->SetText(why.c_str());
+      child->SetText(base::Shortened(fmt::format("with a joint {}{}",
+                                                 name.empty() ? "" : "'" + name + "' ", why))
+                         .c_str());  // a name may be a file long
       child->SetAttribute(kPlace, fmt::format("{}:{}", path_, child->GetLineNum()).c_str());
     }
   }
@@ -81,7 +85,7 @@ class NamesChecker {
   std::string NameOf(const XMLElement& element) const {
     if (element.Name() == std::string("include")) {
       const std::string own = TrimmedText(element.FirstChildElement("name"));
-      return own.empty() ? name_of_file_(element) : own;
+      return own.empty() ? file_of_(element).model_name : own;
     }
     const char* name = element.Attribute("name");
     return name == nullptr ? "" : name;
@@ -119,7 +123,9 @@ class NamesChecker {
       name = TrimmedText(joint.FirstChildElement(end));
       if (name.empty()) return fmt::format("without a <{}>", end);
       if (!IsThere(name, *scope_)) {
-        const std::vector<std::string> likely = base::LikelyNames(name, LinksIn(*scope_));
+        const bool is_told = scope_->FirstChildElement(kBrokenJoint) == nullptr;  // the first is
+        const std::vector<std::string> likely =
+            base::LikelyNames(name, is_told ? LinksIn(*scope_) : std::vector<std::string>());
         return fmt::format("whose <{}> '{}' is not there{}", end, name,
                            likely.empty() ? "" : " (was '" + likely.front() + "' meant?)");
       }
@@ -130,6 +136,7 @@ class NamesChecker {
   /// What joints connect: links, models, frames, and what is in models ("cabinet::box").
   bool IsThere(const std::string& name, const XMLElement& scope) const {
     if (name == "world" || name.rfind("__", 0) == 0) return true;
+    if (&scope == scope_ && names_.count(name) > 0) return true;
     const std::size_t cut = name.find("::");
     const std::string first = name.substr(0, cut);
     for (const auto* child = scope.FirstChildElement(); child != nullptr;
@@ -138,9 +145,17 @@ class NamesChecker {
       const std::string own = NameOf(*child);
       if (own == name) return true;
       if (cut == std::string::npos || own != first) continue;
-      return child->Name() != std::string("model") || IsThere(name.substr(cut + 2), *child);
+      return IsIn(*child, name.substr(cut + 2));
     }
     return false;
+  }
+
+  /// @param name  as joints inside of that model would name it.
+  bool IsIn(const XMLElement& model, const std::string& name) const {
+    if (model.Name() == std::string("model")) return IsThere(name, model);
+    if (model.Name() != std::string("include") || name.find("::") != std::string::npos) return true;
+    const std::set<std::string>& parts = file_of_(model).part_names;
+    return parts.empty() || parts.count(name) > 0 || name.rfind("__", 0) == 0;
   }
 
   static std::vector<std::string> LinksIn(const XMLElement& model) {
@@ -170,7 +185,7 @@ class NamesChecker {
 
   XMLElement* scope_;
   const std::string& path_;
-  const std::function<std::string(const XMLElement&)>& name_of_file_;
+  const std::function<const SdfFile&(const XMLElement&)>& file_of_;
   LoadNotes* notes_;
   std::set<std::string> names_;
   bool is_open_{false};
@@ -180,11 +195,10 @@ class NamesChecker {
 }  // namespace
 
 void CheckNames(XMLElement* scope, const std::string& path, const std::string& version,
-                const std::function<std::string(const XMLElement&)>& name_of_file,
-                LoadNotes* notes) {
+                const std::function<const SdfFile&(const XMLElement&)>& file_of, LoadNotes* notes) {
   const std::string kind = scope->Name();
   if (kind != "world" && kind != "model") return;
-  NamesChecker checker(scope, path, name_of_file, notes);
+  NamesChecker checker(scope, path, file_of, notes);
   checker.CheckEqualNames();
   if (kind == "model") checker.CheckJoints();
   int minor = 0;

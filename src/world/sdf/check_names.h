@@ -14,9 +14,9 @@ namespace hires::world {
 /// <model>, and of poses that count from what is not there; and puts what is wrong otherwise, so
 /// that nobody complains of it again. A joint whose ends are not there is no problem: it becomes a
 /// kBrokenJoint, by which its model stands still.
-/// @param name_of_file  what the model is called that an <include> leads to.
+/// @param file_of  that an <include> leads to.
 void CheckNames(tinyxml2::XMLElement* scope, const std::string& path, const std::string& version,
-                const std::function<std::string(const tinyxml2::XMLElement&)>& name_of_file,
+                const std::function<const SdfFile&(const tinyxml2::XMLElement&)>& file_of,
                 LoadNotes* notes);
 
 }  // namespace hires::world

@@ -76,9 +76,8 @@ class Collector {
          at = at->GetNextElement(kBrokenJoint)) {
       ++num_more;
     }
-    result.broken_joint = fmt::format(
-        "with a joint '{}' {}{}", first->Get<std::string>("name"), first->Get<std::string>(),
-        num_more == 0 ? "" : fmt::format(" and {} more such joints", num_more));
+    result.broken_joint = first->Get<std::string>();
+    if (num_more > 0) result.broken_joint += fmt::format(" and {} more such joints", num_more);
     result.place_of_broken = first->Get<std::string>(kPlace);
   }
 

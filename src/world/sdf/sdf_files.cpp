@@ -105,6 +105,7 @@ class Walk {
     CheckNumbers(*document.RootElement(), path);
     CheckPoseChains(*document.RootElement(), path, limits_.max_pose_chain);
     Include(document.RootElement(), path, &file);
+    CollectParts(document.RootElement()->FirstChildElement("model"), &file);
     CollectNames(*document.RootElement(), &file);
     CheckSize(path, file);
     LineKeepingPrinter printer;
@@ -168,12 +169,26 @@ class Walk {
     }
     CheckNames(
         parent, path, file->version,
-        [&](const XMLElement& include) {
-          const std::string uri = TrimmedText(include.FirstChildElement("uri"));
-          return files_.at(file->includes.at(uri)).model_name;
-        },
+        [&](const XMLElement& include) -> const SdfFile& { return FileOf(include, *file); },
         notes_);
     FillEmptyModel(parent);
+  }
+
+  const SdfFile& FileOf(const XMLElement& include, const SdfFile& file) const {
+    return files_.at(file.includes.at(TrimmedText(include.FirstChildElement("uri"))));
+  }
+
+  void CollectParts(const XMLElement* model, SdfFile* file) const {
+    if (model == nullptr) return;
+    for (const auto* part = model->FirstChildElement(); part != nullptr;
+         part = part->NextSiblingElement()) {
+      if (part->FirstChildElement(kMerged) != nullptr) return file->part_names.clear();
+      std::string name = TrimmedText(part->FirstChildElement("name"));
+      if (const char* own = part->Attribute("name")) name = own;
+      if (name.empty() && part->Name() == std::string("include"))
+        name = FileOf(*part, *file).model_name;
+      if (!name.empty()) file->part_names.insert(name);
+    }
   }
 
   /// False: to a light or the like, which is not needed.

@@ -31,7 +31,9 @@ struct SdfFile {
   std::vector<std::string> models_beside_world;
   int num_worlds{0}, num_models{0};  ///< that stand at its top, of `text`
   std::string model_name;            ///< of the first of these models
-  long num_elements{0};              ///< of `text`, included files as often as they are included
+  /// Of what stands in that model, links and the like; empty where a merged model brings others.
+  std::set<std::string> part_names;
+  long num_elements{0};  ///< of `text`, included files as often as they are included
 };
 using SdfFiles = std::map<std::string, SdfFile>;  ///< by path
 
