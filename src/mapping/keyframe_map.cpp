@@ -24,6 +24,7 @@ constexpr double kSettles = 0.3;        // [m] by which refining may move what w
 constexpr double kWalks = 0.6;          // [m] likewise, of a scan and the latest keyframes
 constexpr double kTurnsAway = 0.3;      // [rad]
 constexpr double kAtBorder = 0.15;      // [m] from a window's border
+constexpr double kWayOfASlip = 10.0;    // [m] of way for each slip, where slips are many
 constexpr int kFewSeen = 10;            // points that tell whether a scan fits where it is
 constexpr double kFitsHere = 0.6;       // of those ...
 constexpr double kFitsBetter = 0.25;    // ... by which another place has to fit better
@@ -142,6 +143,8 @@ void KeyframeMap::NoteBreak() {
   if (size() > 0 && (breaks_.empty() || breaks_.back() != size())) breaks_.push_back(size());
 }
 
+void KeyframeMap::NoteSlip() { slips_.push_back(size()); }
+
 std::vector<PlacedPoints> KeyframeMap::Placed(int first, int last) const {
   std::vector<PlacedPoints> placed;
   for (int i = std::max(0, first); i <= last; ++i)
@@ -215,13 +218,20 @@ SurfaceMap KeyframeMap::MapAround(int place, int half, int k) const {
   return SurfaceMap(Placed(place - half, last));
 }
 
+/// After a break, or many slips that the laser alone followed, nothing is known to lie right.
+bool KeyframeMap::MayBeBentSince(int place) const {
+  if (!breaks_.empty() && breaks_.back() > place) return true;
+  const auto num_slips = slips_.end() - std::upper_bound(slips_.begin(), slips_.end(), place);
+  return static_cast<double>(num_slips) * kWayOfASlip >
+         keyframes_.back()->way - keyframes_[place]->way;
+}
+
 /// Whether a match asks for a large shift of what lies right: what was seen around a place ends
 /// where nobody had looked, and a scan that is pushed into it fits with more of its points than one
-/// that lies half beside it. After a break nothing is known to lie right.
+/// that lies half beside it.
 bool KeyframeMap::FitsWhereItIs(const SurfaceMap& map, int place, const ScanMatch& match) const {
   const Pose2& X_MB = graph_.pose(size() - 1);
-  const bool is_broken = !breaks_.empty() && breaks_.back() > place;
-  if (is_broken || DistanceBetween(match.X_MB, X_MB) < kLarge) return false;
+  if (DistanceBetween(match.X_MB, X_MB) < kLarge) return false;
   const SurfacePoints& few = keyframes_.back()->few;
   const Pose2 near = SearchMatch(map, few, X_MB, {0.3, 0.1}).X_MB;
   const ScanMatch stays = RefineMatch(map, few, near, std::nullopt, params_.surface_sd);
@@ -244,9 +254,10 @@ std::optional<ScanMatch> KeyframeMap::MatchWithPlace(int place) const {
   if (match.fit < params_.min_fit || DistanceBetween(match.X_MB, found.X_MB) >= kSettles)
     return std::nullopt;
   const auto kept = KeptWhereUntold(map, few, graph_.pose(k), match, found.X_MRival, params_);
-  if (!kept || IsAtBorder(kept->X_MB, graph_.pose(k), window) || FitsWhereItIs(map, place, *kept))
-    return std::nullopt;
-  return kept;
+  if (!kept || MayBeBentSince(place)) return kept;
+  return IsAtBorder(kept->X_MB, graph_.pose(k), window) || FitsWhereItIs(map, place, *kept)
+             ? std::nullopt
+             : kept;
 }
 
 /// Poses of neither are changed: who lies beside what was seen before is found so, too.

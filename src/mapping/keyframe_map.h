@@ -41,6 +41,8 @@ class KeyframeMap {
   /// What is added from now on may stand wrongly beside what is there, until a place seen before
   /// ties the two together.
   void NoteBreak();
+  /// The laser contradicted the odometry after the newest keyframe.
+  void NoteSlip();
 
  private:
   struct Keyframe {
@@ -62,6 +64,7 @@ class KeyframeMap {
   std::optional<int> PlaceSeenBefore(bool same_heading) const;
   SurfaceMap MapAround(int place, int half, int k) const;
   std::optional<ScanMatch> MatchWithPlace(int place) const;
+  bool MayBeBentSince(int place) const;
   bool FitsWhereItIs(const SurfaceMap& map, int place, const ScanMatch& match) const;
   bool TellsWhere(const SurfacePoints& few) const;
   MapReturns CountReturns() const;
@@ -75,6 +78,7 @@ class KeyframeMap {
   double way_at_loop_{0.0};          // [m] when the map was last tied together
   int num_loops_{0};
   std::vector<int> breaks_;  // keyframes before which the map may be broken
+  std::vector<int> slips_;   // keyframes before which the laser contradicted the odometry
 };
 
 }  // namespace hires::mapping

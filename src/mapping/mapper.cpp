@@ -212,6 +212,7 @@ void Mapper::Impl::TakeScan(const RobotLog::Scan& scan) {
   if (disagree) {
     anchor_ = {X_MB_, scan.X_OB, kSearchedSd};
     ++num_searched_;
+    keyframes_.NoteSlip();
   }
   if (keyframes_.size() == 0 || is_due) {
     X_MB_ =
