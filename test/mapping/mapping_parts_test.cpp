@@ -78,6 +78,24 @@ TEST(ScanMatcherTest, PoseIsFoundAgainFromBesideIt) {
   EXPECT_GT(match.fit, 0.9);
 }
 
+/// Half of what a scan meets lies where nobody looked before; the rest tells whether it lies right.
+TEST(ScanMatcherTest, FitIsThatOfWhatWasSeenBefore) {
+  const SurfacePoints points = PointsOf(CornerScan(), 30.0);
+  SurfacePoints wall;  // x = 3, the half of them
+  for (const SurfacePoint& point : points)
+    if (point.n.x() < -0.9) wall.push_back(point);
+  const SurfaceMap map(std::vector<PlacedPoints>{{&wall, {}}});
+  const FitWhereSeen right = FitWhereSeenAt(map, points, {});
+  EXPECT_GT(right.num_points, static_cast<int>(wall.size()) - 5);
+  EXPECT_LT(right.num_points, static_cast<int>(points.size()) - 15);
+  EXPECT_GT(right.fit, 0.85);
+  EXPECT_LT(*FitAt(map, points, {}), 0.6);
+  const FitWhereSeen beside = FitWhereSeenAt(map, points, {0.3, 0.0, 0.0});
+  EXPECT_GT(beside.num_points, 20);
+  EXPECT_LT(beside.fit, 0.2);
+  EXPECT_EQ(FitWhereSeenAt(map, points, {9.0, 0.0, 0.0}).num_points, 0);
+}
+
 TEST(ScanMatcherTest, AlongAWallThePriorDecides) {
   std::vector<float> ranges;
   for (int i = -30; i <= 30; ++i)
