@@ -108,10 +108,12 @@ bool Overlap(const std::vector<geometry::Collision>& a, const Pose3& X_MA,
     const geometry::Aabb bounds = geometry::BoundsOf(first.shape, X_MF);
     const double z_min = bounds.lower.z() + kStartSlack, z_max = bounds.upper.z() - kStartSlack;
     if (z_min > z_max) continue;
-    const auto outline = geometry::OutlineInBand(first.shape, X_MF, z_min, z_max);
+    std::optional<geometry::Polygon> outline;  // as most of a world's shapes are far apart
     for (const geometry::Collision& second : b) {
       const Pose3 X_MS = X_MB * second.X_BS;
-      if (!outline || !bounds.Overlaps(geometry::BoundsOf(second.shape, X_MS))) continue;
+      if (!bounds.Overlaps(geometry::BoundsOf(second.shape, X_MS))) continue;
+      if (!outline) outline = geometry::OutlineInBand(first.shape, X_MF, z_min, z_max);
+      if (!outline) break;
       const auto other = geometry::OutlineInBand(second.shape, X_MS, z_min, z_max);
       if (other && geometry::Distance(*outline, *other) == 0.0) return true;
     }
