@@ -88,6 +88,23 @@ TEST_F(FileDoctorTest, WhatIsWrongWithOneFileHidesNothingOfTheOthers) {
   EXPECT_THAT(ended.out, Not(HasSubstr("together they make a scene")));
 }
 
+/// A drive that comes near a loose thing is played again, with it.
+TEST_F(FileDoctorTest, AWayThatIsPlayedAgainIsToldOnce) {
+  std::string text = kFloorAndWall;
+  text.replace(text.find("WALL"), 4, "9");
+  text.insert(text.find("  <frame"), R"(<model name="crate"><pose>2 0.8 0.25 0 0 0</pose>
+    <link name="l"><inertial><mass>1</mass><inertia><ixx>.04</ixx><iyy>.04</iyy><izz>.04</izz>
+    </inertia></inertial><collision name="c"><geometry><box><size>0.5 0.5 0.5</size></box>
+    </geometry></collision></link></model>)");
+  const std::string out =
+      Doctor({"--world", Write("crate.world", text), "--robot", Write("box.urdf", kBox), "--area",
+              "a:0,0,0", "--area", "b:4,0,0"})
+          .out;
+  const std::size_t length = out.find(" m (one rollout");
+  ASSERT_NE(length, std::string::npos) << out;
+  EXPECT_NEAR(std::stod(out.substr(out.rfind(' ', length - 1))), 4.0, 0.3) << out;
+}
+
 TEST_F(FileDoctorTest, ADriveThatFailsIsAFinding) {
   std::string walls = kFloorAndWall;
   walls.replace(walls.find("WALL"), 4, "0");
