@@ -62,9 +62,7 @@ PoseGraph::Edge EdgeOf(int from, int to, const Pose2& X_MF, const ScanMatch& mat
 /// Whether walls tell of the shift that a match asks for, as those of a corridor do not along it.
 bool IsTold(const Pose2& X_before, const ScanMatch& match) {
   const Eigen::Vector2d along = (match.X_MB.position() - X_before.position()).normalized();
-  const Eigen::Matrix3d covariance =
-      (match.information + 1e-6 * Eigen::Matrix3d::Identity()).inverse();
-  return along.dot(covariance.topLeftCorner<2, 2>() * along) <= kToldSd * kToldSd;
+  return along.dot(PositionCovarianceOf(match) * along) <= kToldSd * kToldSd;
 }
 
 /// What fits best at the border of a window would fit better beyond it.

@@ -114,12 +114,15 @@ std::vector<Eigen::Vector2d> EveryFew(const SurfacePoints& points) {
 
 }  // namespace
 
-LeastKnown LeastKnownOf(const ScanMatch& match) {
+Eigen::Matrix2d PositionCovarianceOf(const ScanMatch& match) {
   // By far less than any wall tells: a singular matrix has an inverse then.
   const Eigen::Matrix3d damped = match.information + 1e-6 * Eigen::Matrix3d::Identity();
-  const Eigen::Matrix2d covariance = damped.inverse().topLeftCorner<2, 2>();
+  return damped.inverse().topLeftCorner<2, 2>();
+}
+
+LeastKnown LeastKnownOf(const ScanMatch& match) {
   Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> solver;
-  solver.computeDirect(covariance);
+  solver.computeDirect(PositionCovarianceOf(match));
   return {solver.eigenvectors().col(1), std::sqrt(std::max(solver.eigenvalues()[1], 0.0))};
 }
 
@@ -171,13 +174,12 @@ ScanMatch RefineMatch(const SurfaceMap& map, const SurfacePoints& points, const 
 FoundPose SearchMatch(const SurfaceMap& map, const SurfacePoints& points, const Pose2& guess,
                       const SearchWindow& window) {
   const std::vector<Eigen::Vector2d> few = EveryFew(points);
-  const SearchStep step{2, 0.02};
-  const GridMatch coarse = SearchGrid(map.nearness(), few, guess, window, step);
-  FoundPose found{SearchGrid(map.nearness(), few, coarse.X_MB, {0.1, 0.02}, {1, 0.01}).X_MB,
-                  std::nullopt};
+  const GridSearch search(map.nearness(), few, guess, window, {2, 0.02});
+  const GridMatch coarse = search.Best();
+  const GridSearch fine(map.nearness(), few, coarse.X_MB, {0.1, 0.02}, {1, 0.01});
+  FoundPose found{fine.Best().X_MB, std::nullopt};
   if (window.reach < kFarSearch) return found;
-  const GridMatch other = SearchGrid(map.nearness(), few, guess, window, step,
-                                     Disc{coarse.X_MB.position(), kRivalBeside});
+  const GridMatch other = search.Best(Disc{coarse.X_MB.position(), kRivalBeside});
   if (other.score >= kAsNear * coarse.score) found.X_MRival = other.X_MB;
   return found;
 }

@@ -25,6 +25,9 @@ struct ScanMatch {
   bool is_searched{false};  ///< beyond what odometry allows
 };
 
+/// [m^2] in the map; large where nothing tells of a direction.
+Eigen::Matrix2d PositionCovarianceOf(const ScanMatch& match);
+
 /// The direction in the map in which least is known of the position.
 struct LeastKnown {
   Eigen::Vector2d direction;
@@ -68,7 +71,7 @@ struct FoundPose {
 };
 
 /// The pose in the window at which the points lie nearest to what the map shows: of a grid of
-/// 0.1 m, then of a finer one about it (SearchGrid).
+/// 0.1 m, then of a finer one about it (GridSearch).
 FoundPose SearchMatch(const SurfaceMap& map, const SurfacePoints& points,
                       const geometry::Pose2& guess, const SearchWindow& window);
 

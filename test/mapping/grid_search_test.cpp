@@ -85,7 +85,7 @@ TEST(GridSearchTest, BoundsLeaveOutNothingThatIsBetter) {
     const SearchWindow window{rng.Uniform(0.1, 2.0), rng.Uniform(0.02, 0.1)};
     const SearchStep step{1 + rng.Index(3), 0.02};
     const Pose2 expected = BestOfAll(nearness, seen, guess, window, step);
-    const Pose2 found = SearchGrid(nearness, seen, guess, window, step).X_MB;
+    const Pose2 found = GridSearch(nearness, seen, guess, window, step).Best().X_MB;
     ASSERT_NEAR(found.x, expected.x, 1e-9);
     ASSERT_NEAR(found.y, expected.y, 1e-9);
     ASSERT_NEAR(found.yaw, expected.yaw, 1e-9);
@@ -97,14 +97,15 @@ TEST(GridSearchTest, WhatIsLeftOutIsNotFound) {
   const Points walls = DrawnWalls(&rng);
   const Nearness nearness = NearnessOf(walls);
   const SearchWindow window{2.0, 0.02};
-  const GridMatch best = SearchGrid(nearness, walls, {}, window, {2, 0.02});
+  const GridSearch search(nearness, walls, {}, window, {2, 0.02});
+  const GridMatch best = search.Best();
   EXPECT_EQ(best.X_MB.position(), Eigen::Vector2d::Zero());
   const Disc disc{best.X_MB.position(), 0.5};
-  const GridMatch other = SearchGrid(nearness, walls, {}, window, {2, 0.02}, disc);
+  const GridMatch other = search.Best(disc);
   EXPECT_GE(other.X_MB.position().norm(), 0.5);
   EXPECT_LT(other.score, best.score);
   EXPECT_GT(other.score, 0.0);
-  EXPECT_EQ(SearchGrid(nearness, walls, {}, window, {2, 0.02}, Disc{disc.centre, 5.0}).score, -1.0);
+  EXPECT_EQ(search.Best(Disc{disc.centre, 5.0}).score, -1.0);
 }
 
 TEST(NearnessTest, MostOfSquaresIsThatOfAllTheirCells) {
