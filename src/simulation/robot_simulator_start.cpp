@@ -1,9 +1,11 @@
 // How a simulator comes to its start, and which starts it refuses.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <utility>
 
 #include "hires/base/error.h"
+#include "hires/base/short_text.h"
 #include "hires/simulation/robot_simulator.h"
 #include "hires/world/floor.h"
 #include "simulation/frozen_robot.h"
@@ -14,6 +16,7 @@
 #include "simulation/robot_sensors.h"
 #include "simulation/start_checks.h"
 #include "simulation/varied.h"
+#include "world/contact/overlap.h"
 
 namespace hires::simulation {
 namespace {
@@ -116,11 +119,14 @@ void RobotSimulator::AddCamera(const base::Rng& rng) {
   }
 }
 
+/// All that is wrong at once. Two things that stand in each other in the world's file are none of
+/// it: LoadWorld has seen to them.
 void RobotSimulator::RefuseBadStart() {
+  std::vector<std::string> problems;
   if (const auto contact = FindContact()) {
     const std::string in_floor =
         world::WhyInFloor(scene_->world, contact->obstacle, base().X_MB.position());
-    throw base::ConfigError(fmt::format(
+    problems.push_back(fmt::format(
         "robot starts in collision: its '{}' touches '{}'{}, where it stands at x "
         "{:.3f} m, y {:.3f} "
         "m, yaw {:.3f} rad; {}",
@@ -128,29 +134,64 @@ void RobotSimulator::RefuseBadStart() {
         base().X_MB.yaw, in_floor.empty() ? "move the start" : in_floor));
   }
   const std::vector<world::ObjectState> objects = GetWorldState().objects;
+  RefuseSameNames(objects);
+  const std::vector<physics::Touch>& touches = physics_->FindTouches();
   for (std::size_t i = 0; i < objects.size(); ++i) {
-    for (std::size_t j = 0; j < i; ++j) RefuseTogether(objects[i], objects[j], scene_->world);
-    if (!objects[i].attached_to.empty()) continue;
-    RefuseInsideRobot(objects[i], objects_->BodyOf(static_cast<int>(i)));
-    RefuseInStatics(objects[i], scene_->world);
+    const physics::BodyId body = objects_->BodyOf(static_cast<int>(i));
+    if (objects[i].attached_to.empty())
+      problems.push_back(WhyInsideRobot(objects[i], body, touches));
+    for (const physics::Touch& touch : touches) {
+      if (touch.loose == body && touch.depth > world::kStartSlack)
+        problems.push_back(WhyInsideAnother(objects[i], touch, objects));
+    }
   }
+  problems.erase(std::remove(problems.begin(), problems.end(), ""), problems.end());
+  if (!problems.empty()) throw base::ConfigError(base::AllThatIsWrong("the start", problems));
 }
 
-void RobotSimulator::RefuseInsideRobot(const world::ObjectState& object, physics::BodyId body) {
+std::string RobotSimulator::WhyInsideRobot(const world::ObjectState& object, physics::BodyId body,
+                                           const std::vector<physics::Touch>& touches) const {
   std::optional<Inside> inside;
-  if (planar_) {  // exactly: an arm may reach over an object
-    for (const physics::Touch& touch : physics_->FindTouches()) {
+  for (const physics::Touch& touch : touches) {
+    if (touch.loose != body || touch.depth <= world::kStartSlack) continue;
+    if (planar_) {  // exactly: an arm may reach over an object
       const std::string link = planar_->LinkOfBody(touch.other);
-      const double deepest = inside ? inside->depth : kStartSlack;
-      if (touch.loose == body && touch.depth > deepest && !link.empty()) {
-        inside = Inside{link, touch.depth, touch.depth};
-      }
+      const double deepest = inside ? inside->depth : world::kStartSlack;
+      if (touch.depth > deepest && !link.empty()) inside = Inside{link, touch.depth, touch.depth};
+    } else if (frozen_->IsBody(touch.other)) {
+      const auto model = scene_->world.RequireModel(object.model);
+      inside = FindInside(model->collisions, object.X_MO, frozen_->shapes_B(), X_MB());
     }
-  } else {
-    const auto model = scene_->world.RequireModel(object.model);
-    inside = FindInside(model->collisions, object.X_MO, frozen_->shapes_B(), X_MB());
   }
-  if (inside) FailInsideRobot(object, *scene_, X_MB(), *inside);
+  return inside ? simulation::WhyInsideRobot(object, *scene_, X_MB(), *inside) : "";
+}
+
+/// @param touch  of the object.  @return "" where that is as it should be.
+std::string RobotSimulator::WhyInsideAnother(const world::ObjectState& object,
+                                             const physics::Touch& touch,
+                                             const std::vector<world::ObjectState>& objects) const {
+  const world::World& world = scene_->world;
+  const bool is_of_world = IsOfWorld(object, world);
+  const int fixed = touch.other - 1;  // the floor is the first body, then come the statics
+  if (fixed >= 0 && fixed < static_cast<int>(world.statics.size())) {
+    if (is_of_world || !object.attached_to.empty()) return "";
+    const world::StaticBody& body = world.statics[fixed];
+    return WhyInside(object, body.name, body.collisions, body.X_MB, world);
+  }
+  if (const auto index = objects_->WithBody(touch.other)) {
+    const world::ObjectState& other = objects[*index];
+    if (is_of_world && IsOfWorld(other, world)) return "";
+    return WhyInside(object, other.name, world.RequireModel(other.model)->collisions, other.X_MO,
+                     world);
+  }
+  if (!frozen_->IsBody(touch.other)) return "";
+  for (const world::ObjectState& other : objects) {  // what a frozen robot holds is part of it
+    if (other.attached_to.empty()) continue;
+    const std::string why = WhyInside(
+        object, other.name, world.RequireModel(other.model)->collisions, other.X_MO, world);
+    if (!why.empty()) return why;
+  }
+  return "";
 }
 
 }  // namespace hires::simulation

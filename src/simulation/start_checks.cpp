@@ -4,11 +4,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 
 #include "hires/base/error.h"
 #include "hires/base/text.h"
 #include "hires/localisation/laser_mount.h"
 #include "hires/robot/tray.h"
+#include "world/contact/overlap.h"
 
 namespace hires::simulation {
 namespace {
@@ -40,13 +42,6 @@ double HeightBelowOrigin(const world::ObjectModel& model) {
   return -bounds.lower.z();
 }
 
-/// Whether it stands where the world's file has it.
-bool IsOfWorld(const world::ObjectState& object, const world::World& world) {
-  const world::ObjectState* known = world.initial.Find(object.name);
-  return known != nullptr && known->model == object.model && object.attached_to.empty() &&
-         (known->X_MO.translation - object.X_MO.translation).norm() < kStartSlack;
-}
-
 /// "'carton' of the world (hall.world:5)", or "object 'carton'".
 std::string Described(const world::ObjectState& object, const world::World& world) {
   if (!IsOfWorld(object, world)) return fmt::format("object '{}'", object.name);
@@ -70,16 +65,16 @@ std::string AtArea(const geometry::Pose2& X_MB, const world::World& world) {
   return text;
 }
 
-[[noreturn]] void FailBegunInside(const world::ObjectState& object, const world::World& world,
-                                  const Inside& inside, const geometry::Pose2& X_MB) {
+std::string WhyBegunInside(const world::ObjectState& object, const world::World& world,
+                           const Inside& inside, const geometry::Pose2& X_MB) {
   const Eigen::Vector3d& p = object.X_MO.translation;
-  throw base::ConfigError(fmt::format(
+  return fmt::format(
       "the robot would begin inside of {0}, which stands at x {1:.3f} m, y {2:.3f} m, z {3:.3f} m "
       "and reaches {4:.3f} m deep into its '{5}': it begins{6} at x {7:.3f} m, y {8:.3f} m, yaw "
       "{9:.3f} rad; begin elsewhere (another --from), or move '{10}' in the file, or for this "
       "request (--put {10}:X,Y,Z)",
       Described(object, world), p.x(), p.y(), p.z(), inside.depth, inside.part, AtArea(X_MB, world),
-      X_MB.x, X_MB.y, X_MB.yaw, object.name));
+      X_MB.x, X_MB.y, X_MB.yaw, object.name);
 }
 
 /// What helps a thing that stands on the tray; "" for others.
@@ -101,24 +96,10 @@ std::string TrayRemedy(const Scene& scene, const Pose3& X_MB, const world::Objec
 
 }  // namespace
 
-bool Overlap(const std::vector<geometry::Collision>& a, const Pose3& X_MA,
-             const std::vector<geometry::Collision>& b, const Pose3& X_MB) {
-  for (const geometry::Collision& first : a) {
-    const Pose3 X_MF = X_MA * first.X_BS;
-    const geometry::Aabb bounds = geometry::BoundsOf(first.shape, X_MF);
-    const double z_min = bounds.lower.z() + kStartSlack, z_max = bounds.upper.z() - kStartSlack;
-    if (z_min > z_max) continue;
-    std::optional<geometry::Polygon> outline;  // as most of a world's shapes are far apart
-    for (const geometry::Collision& second : b) {
-      const Pose3 X_MS = X_MB * second.X_BS;
-      if (!bounds.Overlaps(geometry::BoundsOf(second.shape, X_MS))) continue;
-      if (!outline) outline = geometry::OutlineInBand(first.shape, X_MF, z_min, z_max);
-      if (!outline) break;
-      const auto other = geometry::OutlineInBand(second.shape, X_MS, z_min, z_max);
-      if (other && geometry::Distance(*outline, *other) == 0.0) return true;
-    }
-  }
-  return false;
+bool IsOfWorld(const world::ObjectState& object, const world::World& world) {
+  const world::ObjectState* known = world.initial.Find(object.name);
+  return known != nullptr && known->model == object.model && object.attached_to.empty() &&
+         (known->X_MO.translation - object.X_MO.translation).norm() < world::kStartSlack;
 }
 
 std::optional<Inside> FindInside(const std::vector<geometry::Collision>& object, const Pose3& X_MO,
@@ -128,7 +109,7 @@ std::optional<Inside> FindInside(const std::vector<geometry::Collision>& object,
   for (const geometry::Collision& part : robot_B) {
     const geometry::Aabb around = geometry::BoundsOf(part.shape, X_MB * part.X_BS);
     for (const geometry::Collision& shape : object) {
-      if (!Overlap({shape}, X_MO, {part}, X_MB)) continue;
+      if (!world::Overlap({shape}, X_MO, {part}, X_MB)) continue;
       const geometry::Aabb bounds = geometry::BoundsOf(shape.shape, X_MO * shape.X_BS);
       const double depth = std::min(bounds.upper.z(), around.upper.z()) -
                            std::max(bounds.lower.z(), around.lower.z());
@@ -139,12 +120,13 @@ std::optional<Inside> FindInside(const std::vector<geometry::Collision>& object,
   return deepest;
 }
 
-void FailInsideRobot(const world::ObjectState& object, const Scene& scene, const Pose3& X_MB,
-                     const Inside& inside) {
+std::string WhyInsideRobot(const world::ObjectState& object, const Scene& scene, const Pose3& X_MB,
+                           const Inside& inside) {
   if (IsOfWorld(object, scene.world))
-    FailBegunInside(object, scene.world, inside, geometry::Flatten(X_MB));
+    return WhyBegunInside(object, scene.world, inside, geometry::Flatten(X_MB));
   const double below = HeightBelowOrigin(*scene.world.RequireModel(object.model));
-  const bool is_origin = below > kStartSlack && std::abs(inside.sunk - below) <= kStartSlack;
+  const bool is_origin =
+      below > world::kStartSlack && std::abs(inside.sunk - below) <= world::kStartSlack;
   const std::string on_tray = TrayRemedy(scene, X_MB, object);
   const std::string cause =
       is_origin ? fmt::format(
@@ -157,9 +139,8 @@ void FailInsideRobot(const world::ObjectState& object, const Scene& scene, const
                 "its pose has z {:.3f} m: give the height of what it stands on, or put it on "
                 "a free place",
                 object.X_MO.translation.z());
-  throw base::ConfigError(
-      fmt::format("object '{}' starts inside the robot, {:.3f} m deep in '{}'; {}", object.name,
-                  inside.depth, inside.part, cause));
+  return fmt::format("object '{}' starts inside the robot, {:.3f} m deep in '{}'; {}", object.name,
+                     inside.depth, inside.part, cause);
 }
 
 bool StandsOn(const std::vector<geometry::Collision>& robot_B,
@@ -248,27 +229,22 @@ void RefuseTiltedLaser(const robot::Robot& robot) {
       localisation::kMostLaserTilt));
 }
 
-void RefuseTogether(const world::ObjectState& object, const world::ObjectState& earlier,
-                    const world::World& world) {
-  if (base::ToLower(object.name) == base::ToLower(earlier.name)) {
+void RefuseSameNames(const std::vector<world::ObjectState>& objects) {
+  std::set<std::string> seen;
+  for (const world::ObjectState& object : objects) {
+    if (seen.insert(base::ToLower(object.name)).second) continue;
     throw base::ConfigError(
         fmt::format("object '{}' is there twice; name each instance once", object.name));
   }
-  const auto model = world.RequireModel(object.model);
-  const auto other = world.RequireModel(earlier.model);
-  if (Overlap(model->collisions, object.X_MO, other->collisions, earlier.X_MO)) {
-    throw base::ConfigError(fmt::format("{} starts inside '{}'; put it on a free place",
-                                        Described(object, world), earlier.name));
-  }
 }
 
-void RefuseInStatics(const world::ObjectState& object, const world::World& world) {
+std::string WhyInside(const world::ObjectState& object, const std::string& other,
+                      const std::vector<geometry::Collision>& shapes, const Pose3& X_MS,
+                      const world::World& world) {
   const auto model = world.RequireModel(object.model);
-  for (const world::StaticBody& body : world.statics) {
-    if (!Overlap(model->collisions, object.X_MO, body.collisions, body.X_MB)) continue;
-    throw base::ConfigError(fmt::format("{} starts inside '{}'; put it on a free place",
-                                        Described(object, world), body.name));
-  }
+  if (!world::Overlap(model->collisions, object.X_MO, shapes, X_MS)) return "";
+  return fmt::format("{} starts inside '{}'; put it on a free place", Described(object, world),
+                     other);
 }
 
 }  // namespace hires::simulation

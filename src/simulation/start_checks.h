@@ -1,4 +1,4 @@
-// Private to this layer: what a simulator's start must satisfy. All throw base::ConfigError.
+// Private to this layer: what a simulator's start must satisfy. Refuse... throw base::ConfigError.
 #pragma once
 
 #include <optional>
@@ -12,13 +12,10 @@
 
 namespace hires::simulation {
 
-constexpr double kStartSlack = 0.005;  ///< [m] bodies may overlap this much at the start
-constexpr double kRestingGap = 0.06;   ///< [m] an object this far above the tray falls onto it
+constexpr double kRestingGap = 0.06;  ///< [m] an object this far above the tray falls onto it
 
-/// Does a shape of `a` reach more than the slack into a shape of `b`? Shapes count as upright
-/// prisms, as in RobotClearance.
-bool Overlap(const std::vector<geometry::Collision>& a, const geometry::Pose3& X_MA,
-             const std::vector<geometry::Collision>& b, const geometry::Pose3& X_MB);
+/// Whether it stands where the world's file has it.
+bool IsOfWorld(const world::ObjectState& object, const world::World& world);
 
 /// A shape that something starts inside of.
 struct Inside {
@@ -26,16 +23,16 @@ struct Inside {
   double depth{0.0};  ///< [m] by which both heights overlap
   double sunk{0.0};   ///< [m] from the lowest point of what is inside up to the top of the shape
 };
-/// The one of the robot's shapes that the object reaches into deepest, as Overlap judges.
+/// The one of the robot's shapes that the object reaches into deepest, as world::Overlap judges.
 std::optional<Inside> FindInside(const std::vector<geometry::Collision>& object,
                                  const geometry::Pose3& X_MO,
                                  const std::vector<geometry::Collision>& robot_B,
                                  const geometry::Pose3& X_MB);
 
-/// Throws: which object is inside of which part, how deep, and what is the likely cause. What
-/// stands where the world's file has it is not to blame: the robot begins there.
-[[noreturn]] void FailInsideRobot(const world::ObjectState& object, const Scene& scene,
-                                  const geometry::Pose3& X_MB, const Inside& inside);
+/// Which object is inside of which part, how deep, and what is the likely cause. What stands where
+/// the world's file has it is not to blame: the robot begins there.
+std::string WhyInsideRobot(const world::ObjectState& object, const Scene& scene,
+                           const geometry::Pose3& X_MB, const Inside& inside);
 
 /// Does the object's lowest point lie on top of one of the robot's shapes? Its origin, or the
 /// middle of its outline, is over that shape.
@@ -52,10 +49,11 @@ void RefuseUnknownJoints(const robot::JointPositions& joints, const robot::Robot
 void RefuseStiff(const robot::BaseControllerParams& params, double time_step);
 /// A base laser that does not scan in the plane of the base, nor upside down in it.
 void RefuseTiltedLaser(const robot::Robot& robot);
-/// Two objects of one name, or in each other.
-void RefuseTogether(const world::ObjectState& object, const world::ObjectState& earlier,
-                    const world::World& world);
-/// An object in the way of what never moves.
-void RefuseInStatics(const world::ObjectState& object, const world::World& world);
+/// Two objects of one name.
+void RefuseSameNames(const std::vector<world::ObjectState>& objects);
+/// Which object begins in what is called `other` and has these shapes; "" if it does not.
+std::string WhyInside(const world::ObjectState& object, const std::string& other,
+                      const std::vector<geometry::Collision>& shapes, const geometry::Pose3& X_MS,
+                      const world::World& world);
 
 }  // namespace hires::simulation

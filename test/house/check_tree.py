@@ -17,9 +17,9 @@ import xml.etree.ElementTree as ElementTree
 LAYERS = [
     ["base"],
     ["geometry", "temporal", "relay", "actions"],
-    ["robot", "knowledge"],
+    ["robot", "knowledge", "physics"],
     ["world", "planning"],
-    ["physics", "navigation", "manipulation", "perception", "execution", "translation",
+    ["navigation", "manipulation", "perception", "execution", "translation",
      "localisation"],
     ["sensing", "mapping"],
     ["simulation", "skills"],
