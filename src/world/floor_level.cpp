@@ -8,12 +8,12 @@
 #include <set>
 #include <utility>
 
+#include "geometry/mesh_pieces.h"
 #include "hires/base/log.h"
 #include "hires/geometry/angles.h"
 #include "hires/world/floor.h"
 #include "hires/world/occupancy_grid.h"
 #include "world/map_region.h"
-#include "world/mesh_pieces.h"
 
 namespace hires::world {
 namespace {
@@ -390,11 +390,11 @@ Mesh WithoutFloor(const Mesh& mesh, const geometry::Pose3& X_WS, double top) {
                   [&](const Eigen::Vector3d& p_S) { return height(p_S) <= top; });
   if (!reaches_so_low) return mesh;
   auto left = std::make_shared<geometry::TriangleMesh>();
-  for (const geometry::TriangleMesh& part : ConnectedParts(*mesh)) {
+  for (const geometry::TriangleMesh& part : geometry::ConnectedParts(*mesh)) {
     const bool is_below = std::all_of(part.vertices.begin(), part.vertices.end(),
                                       [&](const Eigen::Vector3d& p) { return height(p) <= top; });
     if (is_below) continue;
-    const bool is_solid = IsSolid(part);
+    const bool is_solid = geometry::IsSolid(part);
     const int offset = static_cast<int>(left->vertices.size());
     left->vertices.insert(left->vertices.end(), part.vertices.begin(), part.vertices.end());
     for (const auto& t : part.triangles) {

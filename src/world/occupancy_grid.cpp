@@ -6,12 +6,12 @@
 #include <cmath>
 #include <limits>
 
+#include "geometry/mesh_pieces.h"
 #include "hires/base/check.h"
 #include "hires/base/error.h"
 #include "hires/base/text.h"
 #include "world/floor_level.h"
 #include "world/map_region.h"
-#include "world/mesh_pieces.h"
 
 namespace hires::world {
 namespace {
@@ -36,7 +36,7 @@ void AppendStatic(const StaticBody& body, double z_min, double z_max,
       continue;
     }
     // A whole building can be one mesh: its hull would fill the rooms.
-    auto more = MeshOutlinesInBand(**mesh, body.X_MB * collision.X_BS, z_min, z_max);
+    auto more = geometry::MeshOutlinesInBand(**mesh, body.X_MB * collision.X_BS, z_min, z_max);
     std::move(more.begin(), more.end(), std::back_inserter(*outlines));
   }
 }

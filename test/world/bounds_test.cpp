@@ -6,12 +6,12 @@
 #include <algorithm>
 #include <array>
 
+#include "geometry/mesh_pieces.h"
 #include "hires/base/error.h"
 #include "hires/base/log.h"
 #include "hires/base/text.h"
 #include "hires/world/world.h"
 #include "support/messages.h"
-#include "world/mesh_pieces.h"
 #include "world/sdf_texts.h"
 #include "world/temp_folder.h"
 
@@ -161,7 +161,7 @@ TEST(MeshBoundsTest, TensOfThousandsOfHollowPartsAreToldApart) {
     add(p + Eigen::Vector3d::Constant(0.05), 0.2, true);
     add(p + Eigen::Vector3d(0.0, 0.0, 2.0), 0.2, true);  // round which nothing is
   }
-  EXPECT_EQ(ConnectedParts(mesh).size(), 2u * kPairs);
+  EXPECT_EQ(geometry::ConnectedParts(mesh).size(), 2u * kPairs);
 }
 
 }  // namespace

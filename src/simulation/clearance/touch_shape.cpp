@@ -13,8 +13,8 @@
 #include <utility>
 #include <vector>
 
+#include "geometry/mesh_pieces.h"
 #include "hires/base/overloaded.h"
-#include "world/mesh_pieces.h"
 
 namespace hires::simulation {
 namespace {
@@ -61,8 +61,8 @@ using ConvexPart = std::vector<Plane>;  // normals outwards
 
 std::vector<ConvexPart> SolidPartsOf(const geometry::TriangleMesh& mesh) {
   std::vector<ConvexPart> solid;
-  for (const geometry::TriangleMesh& part : world::ConnectedParts(mesh)) {
-    if (!world::IsSolid(part)) continue;
+  for (const geometry::TriangleMesh& part : geometry::ConnectedParts(mesh)) {
+    if (!geometry::IsSolid(part)) continue;
     ConvexPart planes;
     for (const auto& t : part.triangles) {
       const Eigen::Vector3d& a = part.vertices[t[0]];

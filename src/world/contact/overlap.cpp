@@ -4,7 +4,7 @@
 #include <memory>
 #include <variant>
 
-#include "world/mesh_pieces.h"
+#include "geometry/mesh_pieces.h"
 
 namespace hires::world {
 namespace {
@@ -17,7 +17,7 @@ using MeshOfShape = std::shared_ptr<const geometry::TriangleMesh>;
 std::vector<geometry::Polygon> OutlinesOf(const geometry::Shape& shape, const Pose3& X_MS,
                                           double z_min, double z_max) {
   if (const auto* mesh = std::get_if<MeshOfShape>(&shape))
-    return MeshOutlinesInBand(**mesh, X_MS, z_min, z_max);
+    return geometry::MeshOutlinesInBand(**mesh, X_MS, z_min, z_max);
   const auto outline = geometry::OutlineInBand(shape, X_MS, z_min, z_max);
   return outline ? std::vector<geometry::Polygon>{*outline} : std::vector<geometry::Polygon>{};
 }

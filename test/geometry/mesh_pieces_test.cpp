@@ -1,13 +1,11 @@
-#include "world/mesh_pieces.h"
+#include "geometry/mesh_pieces.h"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 
-namespace hires::world::mesh_pieces_test {
+namespace hires::geometry::mesh_pieces_test {
 namespace {
-
-using geometry::TriangleMesh;
 
 /// Adds the box between two corners, its triangles counter-clockwise from outside.
 void AddBox(const Eigen::Vector3d& lower, const Eigen::Vector3d& upper, TriangleMesh* mesh) {
@@ -47,9 +45,9 @@ TriangleMesh LShape() {
   return mesh;
 }
 
-bool AnyContains(const std::vector<geometry::Polygon>& outlines, double x, double y) {
-  return std::any_of(outlines.begin(), outlines.end(), [&](const geometry::Polygon& outline) {
-    return geometry::Contains(outline, {x, y});
+bool AnyContains(const std::vector<Polygon>& outlines, double x, double y) {
+  return std::any_of(outlines.begin(), outlines.end(), [&](const Polygon& outline) {
+    return Contains(outline, {x, y});
   });
 }
 
@@ -118,4 +116,4 @@ TEST(MeshPiecesTest, NothingLiesAboveTheMesh) {
 }
 
 }  // namespace
-}  // namespace hires::world::mesh_pieces_test
+}  // namespace hires::geometry::mesh_pieces_test

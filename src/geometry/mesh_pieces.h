@@ -4,26 +4,25 @@
 
 #include "hires/geometry/shape.h"
 
-namespace hires::world {
+namespace hires::geometry {
 
 /// The parts of a mesh that hang together (share corners), each a mesh of its own, in the order of
 /// their first triangle. A closed surface that faces inwards, within a solid part, is that part's
 /// cavity (a room in a building that has no door, say): both are one part, which is not solid.
-std::vector<geometry::TriangleMesh> ConnectedParts(const geometry::TriangleMesh& mesh);
+std::vector<TriangleMesh> ConnectedParts(const TriangleMesh& mesh);
 
 /// Does every corner lie on or behind the plane of every triangle? Corners may stand out by `slack`
 /// [m]. Parts too large to be tested cheaply count as not convex.
-bool IsConvex(const geometry::TriangleMesh& mesh, double slack = 1e-6);
+bool IsConvex(const TriangleMesh& mesh, double slack = 1e-6);
 
 /// Whether a part is closed (every edge belongs to two triangles, which run along it in opposite
 /// directions) and convex: then what it encloses is matter. Sheets and walls that go round a room
 /// are not.
-bool IsSolid(const geometry::TriangleMesh& mesh);
+bool IsSolid(const TriangleMesh& mesh);
 
 /// Outlines of a mesh within z_min..z_max that keep its hollows open: a solid part gives its
 /// outline; of other parts each triangle gives one, thickened to 1 mm.
-std::vector<geometry::Polygon> MeshOutlinesInBand(const geometry::TriangleMesh& mesh,
-                                                  const geometry::Pose3& X_WS, double z_min,
-                                                  double z_max);
+std::vector<Polygon> MeshOutlinesInBand(const TriangleMesh& mesh, const Pose3& X_WS, double z_min,
+                                        double z_max);
 
-}  // namespace hires::world
+}  // namespace hires::geometry

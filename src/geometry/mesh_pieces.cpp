@@ -1,4 +1,4 @@
-#include "world/mesh_pieces.h"
+#include "geometry/mesh_pieces.h"
 
 #include <Eigen/Geometry>
 #include <algorithm>
@@ -9,7 +9,7 @@
 #include <tuple>
 #include <utility>
 
-namespace hires::world {
+namespace hires::geometry {
 namespace {
 
 constexpr double kThickness = 1e-3;                    // [m] of a lone triangle
@@ -31,7 +31,7 @@ class Groups {
   std::vector<int> parent_;
 };
 
-Eigen::Vector3d NormalOf(const geometry::TriangleMesh& mesh, const std::array<int, 3>& triangle) {
+Eigen::Vector3d NormalOf(const TriangleMesh& mesh, const std::array<int, 3>& triangle) {
   const Eigen::Vector3d& a = mesh.vertices[triangle[0]];
   return (mesh.vertices[triangle[1]] - a).cross(mesh.vertices[triangle[2]] - a).normalized();
 }
@@ -39,28 +39,28 @@ Eigen::Vector3d NormalOf(const geometry::TriangleMesh& mesh, const std::array<in
 /// Collects triangles and renumbers their corners.
 class PartBuilder {
  public:
-  void Add(const geometry::TriangleMesh& from, const std::array<int, 3>& triangle) {
+  void Add(const TriangleMesh& from, const std::array<int, 3>& triangle) {
     std::array<int, 3> renumbered;
     for (int k = 0; k < 3; ++k) renumbered[k] = NumberOf(from, triangle[k]);
     part_.triangles.push_back(renumbered);
   }
-  geometry::TriangleMesh Take() { return std::move(part_); }
+  TriangleMesh Take() { return std::move(part_); }
 
  private:
-  int NumberOf(const geometry::TriangleMesh& from, int corner) {
+  int NumberOf(const TriangleMesh& from, int corner) {
     const auto [entry, is_new] = numbers_.emplace(corner, static_cast<int>(part_.vertices.size()));
     if (is_new) part_.vertices.push_back(from.vertices[corner]);
     return entry->second;
   }
 
-  geometry::TriangleMesh part_;
+  TriangleMesh part_;
   std::map<int, int> numbers_;
 };
 
 /// A triangle as a flat prism, so that it has an outline also when it stands upright.
-geometry::Shape Thickened(const geometry::TriangleMesh& mesh, const std::array<int, 3>& triangle) {
+Shape Thickened(const TriangleMesh& mesh, const std::array<int, 3>& triangle) {
   const Eigen::Vector3d half = NormalOf(mesh, triangle) * kThickness / 2.0;
-  auto prism = std::make_shared<geometry::TriangleMesh>();
+  auto prism = std::make_shared<TriangleMesh>();
   for (const double side : {-1.0, 1.0}) {
     for (const int corner : triangle) {
       prism->vertices.push_back(mesh.vertices[corner] + side * half);
@@ -68,17 +68,17 @@ geometry::Shape Thickened(const geometry::TriangleMesh& mesh, const std::array<i
   }
   prism->triangles = {{2, 1, 0}, {3, 4, 5}, {0, 1, 4}, {0, 4, 3},
                       {1, 2, 5}, {1, 5, 4}, {2, 0, 3}, {2, 3, 5}};
-  return std::shared_ptr<const geometry::TriangleMesh>(std::move(prism));
+  return std::shared_ptr<const TriangleMesh>(std::move(prism));
 }
 
-void AppendOutline(const geometry::Shape& shape, const geometry::Pose3& X_WS, double z_min,
-                   double z_max, std::vector<geometry::Polygon>* outlines) {
-  auto outline = geometry::OutlineInBand(shape, X_WS, z_min, z_max);
+void AppendOutline(const Shape& shape, const Pose3& X_WS, double z_min, double z_max,
+                   std::vector<Polygon>* outlines) {
+  auto outline = OutlineInBand(shape, X_WS, z_min, z_max);
   if (outline) outlines->push_back(std::move(*outline));
 }
 
 /// The parts that share corners, in the order of their first triangle.
-std::vector<geometry::TriangleMesh> PartsOf(const geometry::TriangleMesh& mesh, Groups* groups) {
+std::vector<TriangleMesh> PartsOf(const TriangleMesh& mesh, Groups* groups) {
   std::map<int, std::size_t> index_of_group;
   std::vector<PartBuilder> builders;
   for (const auto& triangle : mesh.triangles) {
@@ -86,13 +86,13 @@ std::vector<geometry::TriangleMesh> PartsOf(const geometry::TriangleMesh& mesh, 
     if (is_new) builders.emplace_back();
     builders[entry->second].Add(mesh, triangle);
   }
-  std::vector<geometry::TriangleMesh> parts;
+  std::vector<TriangleMesh> parts;
   for (PartBuilder& builder : builders) parts.push_back(builder.Take());
   return parts;
 }
 
 /// Six times the signed volume [m^3], of a closed part: negative where its triangles face inwards.
-double SixfoldVolume(const geometry::TriangleMesh& part) {
+double SixfoldVolume(const TriangleMesh& part) {
   const Eigen::Vector3d& origin = part.vertices.front();
   double sum = 0.0;
   for (const auto& t : part.triangles) {
@@ -102,7 +102,7 @@ double SixfoldVolume(const geometry::TriangleMesh& part) {
   return sum;
 }
 
-bool IsClosed(const geometry::TriangleMesh& mesh) {
+bool IsClosed(const TriangleMesh& mesh) {
   std::set<std::pair<int, int>> edges;
   for (const auto& t : mesh.triangles) {
     for (int k = 0; k < 3; ++k) edges.insert({t[k], t[(k + 1) % 3]});
@@ -113,7 +113,7 @@ bool IsClosed(const geometry::TriangleMesh& mesh) {
 }
 
 /// @pre `around` is solid.
-bool IsWithin(const geometry::TriangleMesh& part, const geometry::TriangleMesh& around) {
+bool IsWithin(const TriangleMesh& part, const TriangleMesh& around) {
   return std::all_of(
       around.triangles.begin(), around.triangles.end(), [&](const std::array<int, 3>& triangle) {
         const Eigen::Vector3d normal = NormalOf(around, triangle);
@@ -124,13 +124,13 @@ bool IsWithin(const geometry::TriangleMesh& part, const geometry::TriangleMesh& 
       });
 }
 
-geometry::Aabb BoundsOfPart(const geometry::TriangleMesh& part) {
-  geometry::Aabb bounds;
+Aabb BoundsOfPart(const TriangleMesh& part) {
+  Aabb bounds;
   for (const Eigen::Vector3d& p : part.vertices) bounds.Include(p);
   return bounds;
 }
 
-bool Holds(const geometry::Aabb& around, const geometry::Aabb& bounds) {
+bool Holds(const Aabb& around, const Aabb& bounds) {
   return (around.lower.array() <= bounds.lower.array()).all() &&
          (around.upper.array() >= bounds.upper.array()).all();
 }
@@ -140,11 +140,11 @@ using Cavity = std::pair<std::size_t, std::size_t>;
 
 /// Meshes may have a hundred thousand parts: along the longest axis, each hollow one is compared
 /// with those alone that are beside it there, by their boxes first.
-std::vector<Cavity> CavitiesIn(const std::vector<geometry::TriangleMesh>& parts) {
-  std::vector<geometry::Aabb> bounds;
+std::vector<Cavity> CavitiesIn(const std::vector<TriangleMesh>& parts) {
+  std::vector<Aabb> bounds;
   std::vector<char> is_hollow;
-  geometry::Aabb all;
-  for (const geometry::TriangleMesh& part : parts) {
+  Aabb all;
+  for (const TriangleMesh& part : parts) {
     bounds.push_back(BoundsOfPart(part));
     is_hollow.push_back(SixfoldVolume(part) < 0.0 && IsClosed(part) ? 1 : 0);
     all.Include(bounds.back());
@@ -180,7 +180,7 @@ std::vector<Cavity> CavitiesIn(const std::vector<geometry::TriangleMesh>& parts)
 
 }  // namespace
 
-std::vector<geometry::TriangleMesh> ConnectedParts(const geometry::TriangleMesh& mesh) {
+std::vector<TriangleMesh> ConnectedParts(const TriangleMesh& mesh) {
   Groups groups(mesh.vertices.size());
   std::vector<int> corner_of;  // of the part with that index, one in the mesh
   for (const auto& triangle : mesh.triangles) {
@@ -191,13 +191,13 @@ std::vector<geometry::TriangleMesh> ConnectedParts(const geometry::TriangleMesh&
   for (const auto& triangle : mesh.triangles) {
     if (seen.insert(groups.Find(triangle[0])).second) corner_of.push_back(triangle[0]);
   }
-  std::vector<geometry::TriangleMesh> parts = PartsOf(mesh, &groups);
+  std::vector<TriangleMesh> parts = PartsOf(mesh, &groups);
   const std::vector<Cavity> cavities = CavitiesIn(parts);
   for (const auto& [hollow, around] : cavities) groups.Join(corner_of[hollow], corner_of[around]);
   return cavities.empty() ? parts : PartsOf(mesh, &groups);
 }
 
-bool IsConvex(const geometry::TriangleMesh& mesh, double slack) {
+bool IsConvex(const TriangleMesh& mesh, double slack) {
   if (mesh.triangles.size() * mesh.vertices.size() > kMaxConvexityTests) return false;
   for (const auto& triangle : mesh.triangles) {
     const Eigen::Vector3d normal = NormalOf(mesh, triangle);
@@ -209,15 +209,14 @@ bool IsConvex(const geometry::TriangleMesh& mesh, double slack) {
   return true;
 }
 
-bool IsSolid(const geometry::TriangleMesh& mesh) { return IsClosed(mesh) && IsConvex(mesh); }
+bool IsSolid(const TriangleMesh& mesh) { return IsClosed(mesh) && IsConvex(mesh); }
 
-std::vector<geometry::Polygon> MeshOutlinesInBand(const geometry::TriangleMesh& mesh,
-                                                  const geometry::Pose3& X_WS, double z_min,
-                                                  double z_max) {
-  std::vector<geometry::Polygon> outlines;
-  for (geometry::TriangleMesh& part : ConnectedParts(mesh)) {
+std::vector<Polygon> MeshOutlinesInBand(const TriangleMesh& mesh, const Pose3& X_WS, double z_min,
+                                        double z_max) {
+  std::vector<Polygon> outlines;
+  for (TriangleMesh& part : ConnectedParts(mesh)) {
     if (IsSolid(part)) {
-      const auto shared = std::make_shared<const geometry::TriangleMesh>(std::move(part));
+      const auto shared = std::make_shared<const TriangleMesh>(std::move(part));
       AppendOutline(shared, X_WS, z_min, z_max, &outlines);
       continue;
     }
@@ -228,4 +227,4 @@ std::vector<geometry::Polygon> MeshOutlinesInBand(const geometry::TriangleMesh& 
   return outlines;
 }
 
-}  // namespace hires::world
+}  // namespace hires::geometry
