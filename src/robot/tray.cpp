@@ -1,5 +1,7 @@
 #include "hires/robot/tray.h"
 
+#include "hires/geometry/bearing_face.h"
+
 namespace hires::robot {
 
 std::optional<geometry::Aabb> TrayPlateOf(const Robot& robot) {
@@ -8,7 +10,7 @@ std::optional<geometry::Aabb> TrayPlateOf(const Robot& robot) {
   std::optional<geometry::Aabb> plate;
   double largest = 0.0;
   for (const geometry::Collision& collision : robot.model.links[*link].collisions) {
-    const geometry::Aabb bounds = geometry::BoundsOf(collision.shape, collision.X_BS);
+    const geometry::Aabb bounds = geometry::BearingBounds(collision.shape, collision.X_BS);
     const Eigen::Vector3d size = bounds.upper - bounds.lower;
     if (size.x() * size.y() <= largest) continue;
     largest = size.x() * size.y();

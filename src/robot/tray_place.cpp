@@ -3,8 +3,13 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <memory>
 #include <utility>
+#include <variant>
 #include <vector>
+
+#include "geometry/mesh_pieces.h"
+#include "hires/geometry/bearing_face.h"
 
 namespace hires::robot {
 namespace {
@@ -24,6 +29,7 @@ constexpr double kMillimetre = 1e-3;
 struct Taken {
   std::string link;
   geometry::Polygon outline;
+  bool is_wall{false};  ///< of the plate's own mesh
 };
 
 /// The plate from above in the root's frame, joints as they are.
@@ -61,7 +67,7 @@ Plate PlateOf(const RobotModel& model, const std::vector<Pose3>& X_R, int link) 
   Plate plate;
   double largest = 0.0;
   for (const geometry::Collision& shape : model.links[link].collisions) {
-    const geometry::Aabb bounds = geometry::BoundsOf(shape.shape, X_R[link] * shape.X_BS);
+    const geometry::Aabb bounds = geometry::BearingBounds(shape.shape, X_R[link] * shape.X_BS);
     const Eigen::Vector3d size = bounds.upper - bounds.lower;
     if (top != nullptr && size.x() * size.y() <= largest) continue;
     largest = size.x() * size.y();
@@ -71,13 +77,20 @@ Plate PlateOf(const RobotModel& model, const std::vector<Pose3>& X_R, int link) 
   const auto outline = geometry::OutlineInBand(top->shape, X_R[link] * top->X_BS,
                                                plate.bounds.lower.z(), plate.bounds.upper.z());
   if (outline) plate.outline = *outline;
+  if (const auto* mesh = std::get_if<std::shared_ptr<const geometry::TriangleMesh>>(&top->shape)) {
+    for (geometry::Polygon& wall : geometry::MeshOutlinesInBand(
+             **mesh, X_R[link] * top->X_BS, plate.bounds.upper.z() + kOnPlate,
+             plate.bounds.upper.z() + kRoomAbove)) {
+      plate.taken.push_back({model.links[link].name, std::move(wall), true});
+    }
+  }
   for (std::size_t i = 0; i < model.links.size(); ++i) {
     for (const geometry::Collision& shape : model.links[i].collisions) {
       if (&shape == top) continue;
       const auto taken = geometry::OutlineInBand(shape.shape, X_R[i] * shape.X_BS,
                                                  plate.bounds.upper.z() + kOnPlate,
                                                  plate.bounds.upper.z() + kRoomAbove);
-      if (taken) plate.taken.push_back({model.links[i].name, *taken});
+      if (taken) plate.taken.push_back({model.links[i].name, *taken, false});
     }
   }
   return plate;
@@ -121,7 +134,9 @@ TrayPlace PlaceOnTray(const RobotModel& model, const JointPositions& joints,
   TrayPlace place;
   Vector2d p = plate.middle();
   const auto [distance, next] = plate.ToNext(p);
-  if (next != nullptr && distance < std::min(kEnough, plate.ToEdge(p))) {
+  // Walls of its own are rims, unless they go through its middle.
+  const double least = next != nullptr && next->is_wall ? kLeastRadius : kEnough;
+  if (next != nullptr && distance < std::min(least, plate.ToEdge(p))) {
     place.taken_by = next->link;
     const Vector2d freest = Freest(plate);
     place.radius = plate.Radius(freest);

@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "hires/base/error.h"
+#include "hires/geometry/bearing_face.h"
 #include "hires/robot/posture.h"
 #include "simulation/start_checks.h"
 #include "world/contact/overlap.h"
@@ -44,7 +45,7 @@ std::optional<TrayPlate> PlateOf(const robot::Robot& robot, const robot::JointPo
   double largest = 0.0;
   for (const geometry::Collision& shape : robot.model.links[*link].collisions) {
     const Pose3 X_BS = X_BL * shape.X_BS;
-    const geometry::Aabb bounds = geometry::BoundsOf(shape.shape, X_BS);
+    const geometry::Aabb bounds = geometry::BearingBounds(shape.shape, X_BS);
     const Vector3d size = bounds.upper - bounds.lower;
     if (size.x() * size.y() <= largest) continue;
     largest = size.x() * size.y();

@@ -4,10 +4,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 #include <set>
+#include <variant>
 
 #include "hires/base/error.h"
 #include "hires/base/text.h"
+#include "hires/geometry/bearing_face.h"
 #include "hires/localisation/laser_mount.h"
 #include "hires/robot/tray.h"
 #include "world/contact/overlap.h"
@@ -16,6 +19,7 @@ namespace hires::simulation {
 namespace {
 
 using geometry::Pose3;
+using Mesh = std::shared_ptr<const geometry::TriangleMesh>;
 
 constexpr double kFarAway = 1000.0;  // [m]
 constexpr double kStiffest = 2.0;    // half of what diverges
@@ -152,6 +156,13 @@ bool StandsOn(const std::vector<geometry::Collision>& robot_B,
   const double bottom = object_bounds.lower.z();
   const Eigen::Vector2d middle = 0.5 * (object_bounds.lower + object_bounds.upper).head<2>();
   return std::any_of(robot_B.begin(), robot_B.end(), [&](const geometry::Collision& part) {
+    if (const auto* mesh = std::get_if<Mesh>(&part.shape)) {  // also the floor of a basket
+      const Eigen::Vector2d origin = X_BO.translation.head<2>();
+      for (const Eigen::Vector2d& p : {origin, middle}) {
+        if (geometry::HasFaceAt(**mesh, part.X_BS, {p.x(), p.y(), bottom}, kRestingGap))
+          return true;
+      }
+    }
     const geometry::Aabb bounds = geometry::BoundsOf(part.shape, part.X_BS);
     if (std::abs(bounds.upper.z() - bottom) > kRestingGap) return false;
     const auto outline =

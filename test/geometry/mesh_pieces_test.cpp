@@ -4,25 +4,14 @@
 
 #include <algorithm>
 
+#include "support/box_mesh.h"
+
 namespace hires::geometry::mesh_pieces_test {
 namespace {
 
-/// Adds the box between two corners, its triangles counter-clockwise from outside.
+/// Its triangles counter-clockwise from outside.
 void AddBox(const Eigen::Vector3d& lower, const Eigen::Vector3d& upper, TriangleMesh* mesh) {
-  const int first = static_cast<int>(mesh->vertices.size());
-  for (int i = 0; i < 8; ++i) {
-    mesh->vertices.emplace_back(i & 1 ? upper.x() : lower.x(), i & 2 ? upper.y() : lower.y(),
-                                i & 4 ? upper.z() : lower.z());
-  }
-  for (const std::array<int, 4>& face : {std::array<int, 4>{0, 2, 3, 1},
-                                         {4, 5, 7, 6},
-                                         {0, 1, 5, 4},
-                                         {2, 6, 7, 3},
-                                         {0, 4, 6, 2},
-                                         {1, 3, 7, 5}}) {
-    mesh->triangles.push_back({first + face[0], first + face[1], first + face[2]});
-    mesh->triangles.push_back({first + face[0], first + face[2], first + face[3]});
-  }
+  hires::test_support::AddBox(lower, upper, false, mesh);
 }
 
 /// An L seen from above, 2 m long each way and 1 m thick and high, as one closed surface.
