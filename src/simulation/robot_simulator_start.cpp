@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <tuple>
 #include <utility>
 
 #include "hires/base/error.h"
@@ -180,8 +181,12 @@ std::string RobotSimulator::WhyInsideAnother(const world::ObjectState& object,
   }
   if (const auto index = objects_->WithBody(touch.other)) {
     const world::ObjectState& other = objects[*index];
-    if (is_of_world && IsOfWorld(other, world)) return "";
-    return WhyInside(object, other.name, world.RequireModel(other.model)->collisions, other.X_MO,
+    const bool is_other_of_world = IsOfWorld(other, world);
+    if (is_of_world && is_other_of_world) return "";
+    // Who was put is to blame; of two the later one.
+    const auto& [put, around] =
+        is_other_of_world ? std::tie(object, other) : std::tie(other, object);
+    return WhyInside(put, around.name, world.RequireModel(around.model)->collisions, around.X_MO,
                      world);
   }
   if (!frozen_->IsBody(touch.other)) return "";

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "hires/physics/closed_forms.h"
+#include "support/box_mesh.h"
 #include "support/messages.h"
 #include "support/scenes.h"
 
@@ -641,6 +642,36 @@ TEST(RobotSimulatorTest, WhatStartsALittleDeepInItsSupportIsTakenOutAndStays) {
       EXPECT_LT((simulator.PoseOf(0).translation - X_MOstart.translation).norm(), 1e-4);
     }
   }
+}
+
+TEST(RobotSimulatorTest, ThingsStandInABasketThatIsOneMesh) {
+  robot::Robot robot = TrayRobot();
+  robot.model.links[1].collisions = {
+      test_support::Shape("basket", test_support::Basket(), {0.0, 0.0, -0.01})};
+  const auto scene = MakeScene(test_support::Room(), robot);
+  RobotSimulator simulator(scene, {}, With({OnTray("mill1", "mill", kMiddle)}), StandingAt(kMiddle),
+                           base::Rng(1));
+  EXPECT_THAT(simulator.carried(), ::testing::ElementsAre(0));
+  StepFor(&simulator, 0.5);
+  EXPECT_TRUE(simulator.StandsOnRobot(0));
+  EXPECT_NEAR(simulator.PoseOf(0).translation.z(), kTrayTop, 2e-3);
+  try {
+    RobotSimulator(scene, {}, With({OnTray("mill1", "mill", kMiddle, {0.19, 0.0})}),
+                   StandingAt(kMiddle), base::Rng(1));
+    FAIL() << "stands in the wall";
+  } catch (const base::ConfigError& error) {
+    EXPECT_THAT(error.what(), HasSubstr("starts inside the robot"));
+  }
+}
+
+TEST(RobotSimulatorTest, AllThatStandsInSomethingIsRefusedAtOnce) {
+  world::ObjectState in_wall = OnTray("mill1", "mill", kMiddle);
+  in_wall.X_MO.translation = {6.03, 2.0, 0.0};
+  world::ObjectState in_robot = OnTray("mill2", "mill", kMiddle);
+  in_robot.X_MO.translation.z() -= 0.1;
+  EXPECT_THAT(WhyRefused(With({in_wall, in_robot}), kMiddle),
+              AllOf(HasSubstr("2 things are wrong"), HasSubstr("'mill1' starts inside 'east_wall'"),
+                    HasSubstr("'mill2' starts inside the robot")));
 }
 
 TEST(RobotSimulatorTest, NamesTheOneOfSeveralObjectsThatIsInsideTheRobot) {

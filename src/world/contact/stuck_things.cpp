@@ -20,8 +20,9 @@ constexpr double kMostMovedOut = 0.02;  // [m] as much as hand-made worlds are i
 
 /// Where a thing reaches deepest.
 struct Stuck {
-  std::string in;
-  double depth{0.0};  // [m]
+  std::string in;           // another or what never moves; "": the floor alone
+  double depth{0.0};        // [m] in that
+  double below_floor{0.0};  // [m]
 };
 
 /// By the engine's contacts, as those would throw things apart, and by the outlines, as the depths
@@ -51,7 +52,7 @@ class StuckFinder {
         Note(object.name, other->second->name, touch.depth);
         Note(other->second->name, object.name, touch.depth);
       } else if (touch.other == 0) {
-        Note(object.name, "", touch.depth);
+        stuck_[object.name].below_floor = touch.depth;
       } else {
         const StaticBody& body = world_.statics.at(touch.other - 1);
         if (Reaches(object, body.collisions, body.X_MB)) Note(object.name, body.name, touch.depth);
@@ -68,7 +69,9 @@ class StuckFinder {
 
   void Note(const std::string& name, const std::string& in, double depth) {
     Stuck& stuck = stuck_[name];
-    if (depth > stuck.depth) stuck = {in, depth};
+    if (depth <= stuck.depth) return;
+    stuck.in = in;
+    stuck.depth = depth;
   }
 
   const World& world_;
@@ -77,20 +80,19 @@ class StuckFinder {
   std::map<std::string, Stuck> stuck_;
 };
 
-/// What so many things have in common; the first in the order of the file's lines, as far as known.
+/// What so many things have in common.
 void Say(const std::vector<const ObjectState*>& things, const std::map<std::string, Stuck>& stuck,
          const std::string& what, World* world) {
   if (things.empty()) return;
   const std::string& first = things.front()->name;
   const std::string source = SourceOf(first, *world);
   const Stuck& how = stuck.at(first);
-  const std::string in = how.in.empty() ? "the floor" : fmt::format("'{}'", how.in);
-  world->notes.push_back(fmt::format("{} {}: {}; {}{}'{}', {:.3f} m deep in {}", things.size(),
-                                     things.size() == 1
-                                         ? "loose thing stands in another one or in the floor"
-                                         : "loose things stand in others or in the floor",
-                                     what, things.size() == 1 ? "" : "first ",
-                                     source.empty() ? "" : source + " ", first, how.depth, in));
+  const bool is_one = things.size() == 1;
+  world->notes.push_back(fmt::format("{} loose thing{} {}; {}{}{}'{}', {:.3f} m deep in {}",
+                                     things.size(), is_one ? "" : "s", what, is_one ? "" : "first ",
+                                     source, source.empty() ? "" : " ", first,
+                                     how.in.empty() ? how.below_floor : how.depth,
+                                     how.in.empty() ? "the floor" : fmt::format("'{}'", how.in)));
   base::Log(base::LogLevel::kWarn,
             fmt::format("world={} note=\"{}\"", world->name, world->notes.back()));
 }
@@ -106,25 +108,28 @@ World HoldWhatIsStuck(World world) {
   const std::map<std::string, Stuck> stuck = StuckFinder(world).Find();
   if (stuck.empty()) return world;
   std::vector<ObjectState> loose;
-  std::vector<const ObjectState*> moved, held;
+  std::vector<const ObjectState*> held, lifted, moved;
   const std::vector<ObjectState> all = std::move(world.initial.objects);
   for (const ObjectState& object : all) {
     const auto found = stuck.find(object.name);
-    const bool is_held = found != stuck.end() && found->second.depth > kMostMovedOut;
-    if (found != stuck.end()) (is_held ? held : moved).push_back(&object);
-    if (is_held) {
+    if (found != stuck.end() && found->second.depth > kMostMovedOut) {
+      held.push_back(&object);
       world.statics.push_back({object.name, object.X_MO, world.ModelOf(object)->collisions});
-    } else {
-      loose.push_back(object);
+      continue;
     }
+    if (found != stuck.end()) (found->second.in.empty() ? lifted : moved).push_back(&object);
+    loose.push_back(object);
   }
   world.initial.objects = std::move(loose);
   std::stable_sort(world.statics.begin(), world.statics.end(), ComesBeforeByName);
   Say(held, stuck,
-      "physics would throw such apart, so they stay where the file has them, as obstacles; move "
-      "them there if they shall be loose",
+      "in one another or in what never moves: physics would throw such apart, so they stay where "
+      "the file has them, as obstacles; move them there if they shall be loose",
       &world);
-  Say(moved, stuck, fmt::format("by at most {:g} m; such begin above or beside it", kMostMovedOut),
+  Say(lifted, stuck, "in the floor: such begin on it", &world);
+  Say(moved, stuck,
+      fmt::format("at most {:g} m deep in one another or in what never moves: such begin beside it",
+                  kMostMovedOut),
       &world);
   world.hash = world.ComputeHash();
   return world;
