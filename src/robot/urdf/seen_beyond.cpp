@@ -57,7 +57,8 @@ double AreaOf(const geometry::Aabb& box) {
 }
 
 /// Whether a link is fixed to the base, and so is nothing that collides, or no more than a sensor
-/// or a token: less than a quarter of what collides of the whole robot, seen from above.
+/// or a token: less than a quarter of what collides of the whole robot, seen from above. A share of
+/// it, as the laser of a car is no token by its size, and yet hides nothing of the car's body.
 std::vector<bool> OfAnUncoveredBase(const RobotModel& model, const Bounds& bounds, int base) {
   constexpr double kCovering = 0.25;
   std::vector<int> group(model.links.size(), 0);  // link that all links fixed to it share
@@ -77,7 +78,9 @@ std::vector<bool> OfAnUncoveredBase(const RobotModel& model, const Bounds& bound
   return uncovered;
 }
 
-/// Whether nothing of a link collides, or only a token that keeps a simulator quiet.
+/// Whether nothing of a link collides, or only a token that keeps a simulator quiet. By its size
+/// and not by a share: a wheel or a laser is a small share of its robot, and its shape is that of
+/// all of it.
 bool HasTokenAtMost(const geometry::Aabb& box) {
   constexpr double kToken = 0.1;  // [m] in all directions
   return (box.upper - box.lower).maxCoeff() < kToken;
