@@ -93,6 +93,27 @@ TEST_F(WildJointsTest, EndsOfJointsMayBeOtherThanLinks) {
   }
 }
 
+/// As SDF has it, which has no attribute name of an <include>.
+TEST_F(WildJointsTest, AnIncludeIsCalledByItsNameElementAndNotByAnAttribute) {
+  WriteModel("finger", Model("finger", "<link name='tip'/>"));
+  const std::string base = Link("base", "0 0 0 0 0 0", Inertial(1, 0.2));
+  for (const std::string own : {"", "thumb"}) {
+    const std::string name = own.empty() ? "finger" : own;
+    WriteModel("wrist",
+               Model("wrist", "<include name='odd'><uri>model://finger</uri>" +
+                                  (own.empty() ? "" : "<name>" + own + "</name>") + "</include>"));
+    const auto load = [&](const std::string& end) {
+      return Load(Model("bot", base + "<include><uri>model://wrist</uri></include>" +
+                                   Joint("fixed", "base", "wrist::" + end)),
+                  "1.9");
+    };
+    const World world = load(name);
+    EXPECT_EQ(world.initial.objects.size(), 1u) << own;
+    EXPECT_THAT(world.notes, IsEmpty()) << own;
+    EXPECT_THAT(load("odd").notes, ElementsAre(HasSubstr("<child> 'wrist::odd' is not there")));
+  }
+}
+
 TEST_F(WildJointsTest, OfWhatIsStaticByItsIncludeBrokenJointsNeedNoWord) {
   WriteModel("bot", Model("bot", Link("base", "0 0 0 0 0 0", "") + Joint("fixed", "base", "x")));
   const std::string include = "<include><uri>model://bot</uri>{}<name>b{}</name></include>\n";

@@ -183,10 +183,10 @@ class Walk {
     for (const auto* part = model->FirstChildElement(); part != nullptr;
          part = part->NextSiblingElement()) {
       if (part->FirstChildElement(kMerged) != nullptr) return file->part_names.clear();
+      const bool is_include = part->Name() == std::string("include");
       std::string name = TrimmedText(part->FirstChildElement("name"));
-      if (const char* own = part->Attribute("name")) name = own;
-      if (name.empty() && part->Name() == std::string("include"))
-        name = FileOf(*part, *file).model_name;
+      if (const char* own = part->Attribute("name"); own != nullptr && !is_include) name = own;
+      if (name.empty() && is_include) name = FileOf(*part, *file).model_name;
       if (!name.empty()) file->part_names.insert(name);
     }
   }
