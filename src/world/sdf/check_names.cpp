@@ -19,8 +19,8 @@ using tinyxml2::XMLElement;
 
 class NamesChecker {
  public:
-  NamesChecker(XMLElement* scope, const std::string& path,
-               const std::function<const SdfFile&(const XMLElement&)>& file_of, LoadNotes* notes)
+  NamesChecker(XMLElement* scope, const std::string& path, const FileOfInclude& file_of,
+               LoadNotes* notes)
       : scope_(scope), path_(path), file_of_(file_of), notes_(notes) {}
 
   void CheckEqualNames() {
@@ -82,14 +82,7 @@ class NamesChecker {
     return name == "link" || name == "model" || name == "joint" || name == "frame" ? name : "";
   }
 
-  std::string NameOf(const XMLElement& element) const {
-    if (element.Name() == std::string("include")) {
-      const std::string own = TrimmedText(element.FirstChildElement("name"));
-      return own.empty() ? file_of_(element).model_name : own;
-    }
-    const char* name = element.Attribute("name");
-    return name == nullptr ? "" : name;
-  }
+  std::string NameOf(const XMLElement& part) const { return NameOfPart(part, file_of_); }
 
   static void Rename(const std::string& name, XMLElement* element) {
     const std::string other = fmt::format("{}_of_line_{}", name, element->GetLineNum());
@@ -185,7 +178,7 @@ class NamesChecker {
 
   XMLElement* scope_;
   const std::string& path_;
-  const std::function<const SdfFile&(const XMLElement&)>& file_of_;
+  const FileOfInclude& file_of_;
   LoadNotes* notes_;
   std::set<std::string> names_;
   bool is_open_{false};
@@ -195,7 +188,7 @@ class NamesChecker {
 }  // namespace
 
 void CheckNames(XMLElement* scope, const std::string& path, const std::string& version,
-                const std::function<const SdfFile&(const XMLElement&)>& file_of, LoadNotes* notes) {
+                const FileOfInclude& file_of, LoadNotes* notes) {
   const std::string kind = scope->Name();
   if (kind != "world" && kind != "model") return;
   NamesChecker checker(scope, path, file_of, notes);

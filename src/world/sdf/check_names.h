@@ -2,11 +2,10 @@
 
 #include <tinyxml2.h>
 
-#include <functional>
 #include <string>
 
 #include "world/sdf/load_notes.h"
-#include "world/sdf/sdf_files.h"
+#include "world/sdf/prune_sdf.h"
 
 namespace hires::world {
 
@@ -16,7 +15,6 @@ namespace hires::world {
 /// kBrokenJoint, by which its model stands still.
 /// @param file_of  that an <include> leads to.
 void CheckNames(tinyxml2::XMLElement* scope, const std::string& path, const std::string& version,
-                const std::function<const SdfFile&(const tinyxml2::XMLElement&)>& file_of,
-                LoadNotes* notes);
+                const FileOfInclude& file_of, LoadNotes* notes);
 
 }  // namespace hires::world

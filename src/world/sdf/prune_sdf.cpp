@@ -357,6 +357,15 @@ std::string TrimmedText(const XMLElement* element) {
   return text == nullptr ? "" : base::Trimmed(text);
 }
 
+std::string NameOfPart(const XMLElement& part, const FileOfInclude& file_of) {
+  if (part.Name() == std::string("include")) {
+    const std::string own = TrimmedText(part.FirstChildElement("name"));
+    return own.empty() ? file_of(part).model_name : own;
+  }
+  const char* name = part.Attribute("name");
+  return name == nullptr ? "" : name;
+}
+
 void FillEmptyModel(XMLElement* model) {
   if (model->Name() != std::string("model")) return;
   for (const char* part : {"link", "model", "include"}) {

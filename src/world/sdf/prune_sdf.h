@@ -2,6 +2,7 @@
 
 #include <tinyxml2.h>
 
+#include <functional>
 #include <string>
 
 #include "world/sdf/load_notes.h"
@@ -41,5 +42,12 @@ void FillEmptyModel(tinyxml2::XMLElement* model);
 
 /// The text of an element without white space around it; "" if it is not there.
 std::string TrimmedText(const tinyxml2::XMLElement* element);
+
+/// The file that an <include> leads to, which was read.
+using FileOfInclude = std::function<const SdfFile&(const tinyxml2::XMLElement& include)>;
+
+/// What a link, model, joint, frame or <include> is called in its world or model: its attribute
+/// name; of an <include> its <name>, else what the model of its file is called. "" if it has none.
+std::string NameOfPart(const tinyxml2::XMLElement& part, const FileOfInclude& file_of);
 
 }  // namespace hires::world

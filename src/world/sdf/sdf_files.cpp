@@ -167,15 +167,15 @@ class Walk {
         MakeEmptyModel(child);
       }
     }
-    CheckNames(
-        parent, path, file->version,
-        [&](const XMLElement& include) -> const SdfFile& { return FileOf(include, *file); },
-        notes_);
+    CheckNames(parent, path, file->version, FilesOf(*file), notes_);
     FillEmptyModel(parent);
   }
 
-  const SdfFile& FileOf(const XMLElement& include, const SdfFile& file) const {
-    return files_.at(file.includes.at(TrimmedText(include.FirstChildElement("uri"))));
+  /// Of the includes of a file.
+  FileOfInclude FilesOf(const SdfFile& file) const {
+    return [&](const XMLElement& include) -> const SdfFile& {
+      return files_.at(file.includes.at(TrimmedText(include.FirstChildElement("uri"))));
+    };
   }
 
   void CollectParts(const XMLElement* model, SdfFile* file) const {
@@ -183,10 +183,7 @@ class Walk {
     for (const auto* part = model->FirstChildElement(); part != nullptr;
          part = part->NextSiblingElement()) {
       if (part->FirstChildElement(kMerged) != nullptr) return file->part_names.clear();
-      const bool is_include = part->Name() == std::string("include");
-      std::string name = TrimmedText(part->FirstChildElement("name"));
-      if (const char* own = part->Attribute("name"); own != nullptr && !is_include) name = own;
-      if (name.empty() && is_include) name = FileOf(*part, *file).model_name;
+      const std::string name = NameOfPart(*part, FilesOf(*file));
       if (!name.empty()) file->part_names.insert(name);
     }
   }
