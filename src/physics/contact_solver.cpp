@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 #include <numeric>
+#include <set>
 #include <utility>
 
 #include "physics/boxed_lcp.h"
@@ -209,15 +210,12 @@ bool SolveContacts(const std::vector<SolverContact>& contacts, double softness,
   const Islands islands(contacts, *bodies);
   std::vector<int> firsts;
   for (const SolverContact& contact : contacts) firsts.push_back(islands.Of(contact));
-  for (int first = 0; first < static_cast<int>(bodies->size()); ++first) {
+  for (const int first : std::set<int>(firsts.begin(), firsts.end())) {
     Island island(bodies);
-    bool is_empty = true;
     for (std::size_t i = 0; i < contacts.size(); ++i) {
-      if (firsts[i] != first) continue;
-      island.Add(contacts[i]);
-      is_empty = false;
+      if (firsts[i] == first) island.Add(contacts[i]);
     }
-    if (!is_empty && !island.Solve(softness)) return false;
+    if (!island.Solve(softness)) return false;
   }
   return true;
 }

@@ -138,6 +138,7 @@ LooseBody& PhysicsWorld::Impl::LooseAt(BodyId id) {
 
 void PhysicsWorld::Impl::SetLoose(const BodyState& state, LooseBody* body) {
   HIRES_CHECK(IsUsable(state), "the state of a loose body is finite, its rotation of unit length");
+  Wake(body);
   body->state = state;
   body->is_canonical = true;
   const Eigen::Quaterniond& q = state.X_WB.rotation;
@@ -266,18 +267,24 @@ void PhysicsWorld::SetExtraAcceleration(const Vector3d& acceleration) {
   impl_->acceleration = acceleration;
   const Vector3d sum = acceleration + Vector3d(0.0, 0.0, -impl_->params.gravity);
   dWorldSetGravity(impl_->world.get(), sum.x(), sum.y(), sum.z());
+  if (acceleration.isZero(0.0)) return;
+  for (LooseBody& body : impl_->loose) impl_->Wake(&body);
 }
 
 void PhysicsWorld::Step() {
   EnsureOdeIsReady();
   Impl& impl = *impl_;
+  impl.PlaceAllLoose();
+  impl.WakeTouched();
   impl.FindAllContacts();
+  impl.NoteReached();
   impl.num_contacts = static_cast<int>(impl.contacts.size());
   impl.MoveLoose();
   impl.NoteBroken();
   dJointGroupEmpty(impl.joints.get());
   impl.MoveDriven();
-  for (LooseBody& body : impl.loose) body.is_canonical = false;
+  for (LooseBody* body : impl.awake) body->is_canonical = false;
+  impl.RestWhatCan();
   ++impl.num_steps;
 }
 
@@ -295,6 +302,8 @@ PhysicsState PhysicsWorld::Save() {
   }
   for (const LooseBody& body : impl_->loose) {
     if (body.held) state.held.push_back(*body.held);
+    if (body.is_resting) state.resting.push_back(body.id);
+    if (body.is_reached) state.reached.push_back(body.id);
   }
   state.broken = impl_->broken;
   Restore(state);
@@ -308,13 +317,17 @@ void PhysicsWorld::Restore(const PhysicsState& state) {
   for (BodyId id = 0; id < static_cast<BodyId>(impl_->entries.size()); ++id) {
     const BodyEntry& entry = impl_->entries[id];
     if (entry.kind == BodyKind::kLoose) {
-      impl_->Release(state.bodies[id], &impl_->loose[entry.index]);
+      LooseBody& body = impl_->loose[entry.index];
+      impl_->Release(state.bodies[id], &body);
+      body.is_reached = false;
     }
     if (entry.kind == BodyKind::kDriven) {
       impl_->SetDriven(state.bodies[id], &impl_->groups[entry.index]);
     }
   }
   for (const HeldBody& held : state.held) impl_->Grip(held, &impl_->LooseAt(held.loose));
+  for (const BodyId id : state.reached) impl_->LooseAt(id).is_reached = true;
+  for (const BodyId id : state.resting) impl_->Rest(&impl_->LooseAt(id));
   impl_->broken = state.broken;
 }
 

@@ -63,20 +63,27 @@ void PhysicsWorld::Impl::PlaceLoose(LooseBody* body) {
   }
 }
 
+void PhysicsWorld::Impl::PlaceAllLoose() {
+  for (LooseBody& body : loose) {
+    if (body.is_resting) continue;
+    if (body.held) SetLoose(HeldState(body), &body);
+    PlaceLoose(&body);
+  }
+}
+
 void PhysicsWorld::Impl::FindAllContacts() {
   contacts.clear();
   is_pile = false;
   fastest_surface2 = 0.0;
   touches.clear();
+  awake.clear();
   for (LooseBody& body : loose) {
-    if (body.held) SetLoose(HeldState(body), &body);
-    PlaceLoose(&body);
-  }
-  for (LooseBody& body : loose) {
+    if (body.is_resting) continue;
+    awake.push_back(&body);
     for (std::size_t g = 0; g < groups.size(); ++g) TouchGroup(static_cast<int>(g), &body);
   }
-  for (std::size_t b = 1; b < loose.size(); ++b) {
-    for (std::size_t a = 0; a < b; ++a) TouchLoose(&loose[a], &loose[b]);
+  for (std::size_t b = 1; b < awake.size(); ++b) {
+    for (std::size_t a = 0; a < b; ++a) TouchLoose(awake[a], awake[b]);
   }
 }
 

@@ -24,7 +24,9 @@ BodyState PhysicsWorld::Impl::HeldState(const LooseBody& body) const {
 }
 
 void PhysicsWorld::Impl::Grip(const HeldBody& held, LooseBody* body) {
+  Wake(body);
   body->held = held;
+  body->is_reached = true;
   dBodySetKinematic(body->ode);
   SetLoose(HeldState(*body), body);
 }
@@ -88,6 +90,7 @@ const std::vector<Touch>& PhysicsWorld::touches() const { return impl_->touches;
 std::vector<Touch> PhysicsWorld::FindTouches() {
   std::vector<Touch> last;
   std::swap(last, impl_->touches);
+  impl_->PlaceAllLoose();
   impl_->FindAllContacts();
   std::swap(last, impl_->touches);
   return last;

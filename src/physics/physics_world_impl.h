@@ -82,6 +82,9 @@ struct LooseBody {
   BodyState state;
   BodyId id{-1};
   std::optional<HeldBody> held;
+  bool may_rest{false};    // see PhysicsWorld::LetRest
+  bool is_resting{false};  // ODE leaves it out then, and its shapes stay placed
+  bool is_reached{false};  // see PhysicsWorld::IsReached
 
   Vector3d p_WC, v, w;  // at the start of the step
 };
@@ -158,9 +161,22 @@ struct PhysicsWorld::Impl {
   void Release(const BodyState& state, LooseBody* body);
   void PlaceFixture(const Group& group, Fixture* fixture) const;
   std::optional<FixedTouch> LookForFixedTouch(BodyId except, Group* group);
-  void FindAllContacts();
+  void PlaceAllLoose();
+  void FindAllContacts();  ///< of what is placed
   /// Sums up `found` for touches().
   void NoteTouch(const LooseBody& body, BodyId other, double friction);
+
+  void Rest(LooseBody* body);
+  void Wake(LooseBody* body);
+  /// Wakes what rests and is touched by something that moves or may; so what it touches, too.
+  void WakeTouched();
+  bool IsTouchedByGroup(Group* group, LooseBody* body);
+  bool IsTouchedBy(LooseBody* other, LooseBody* body);
+  void NoteReached();
+  /// It hardly moves, is held up from straight below by what never moves, and nothing else touches
+  /// it.
+  bool CanRest(int index);
+  void RestWhatCan();
 
   void PlaceLoose(LooseBody* body);
   void TouchGroup(int group, LooseBody* body);
@@ -203,9 +219,11 @@ struct PhysicsWorld::Impl {
   std::vector<BodyEntry> entries;  // by BodyId
   std::vector<Group> groups;       // 0 is the static one
   std::vector<LooseBody> loose;
-  std::vector<RawState> raw;  // of the loose bodies, at the start of the step
+  std::vector<LooseBody*> awake;  // those that FindAllContacts looked at last: that do not rest
+  std::vector<RawState> raw;      // of the loose bodies, at the start of the step
   std::vector<geometry::Pose3> static_poses;
   ContactList found;
+  std::vector<Vector3d> below;  // contact points of one body, for CanRest
   std::vector<Touch> touches;
 };
 

@@ -117,7 +117,7 @@ std::vector<SolverBody> PhysicsWorld::Impl::FreeBodies() {
   PutRawBack();
   for (std::size_t i = 0; i < loose.size(); ++i) {
     bodies[i].p_WC = ToEigen(raw[i].position);
-    if (loose[i].held) continue;
+    if (loose[i].held || loose[i].is_resting) continue;
     dMass mass;
     dBodyGetMass(loose[i].ode, &mass);
     const Matrix3d R_WB = detail::RotationOf(loose[i].ode);
@@ -134,6 +134,7 @@ bool PhysicsWorld::Impl::MoveBySolver() {
   for (const PlacedContact& placed : contacts) points.push_back(ContactFor(placed, raw, params));
   if (!SolveContacts(points, params.cfm / params.time_step, &bodies)) return false;
   for (std::size_t i = 0; i < loose.size(); ++i) {
+    if (loose[i].is_resting) continue;
     const Vector3d force = bodies[i].impulse / params.time_step;
     const Vector3d torque = bodies[i].turning / params.time_step;
     dBodyAddForce(loose[i].ode, force.x(), force.y(), force.z());
@@ -146,6 +147,7 @@ bool PhysicsWorld::Impl::MoveBySolver() {
 void PhysicsWorld::Impl::KeepRaw() {
   raw.resize(loose.size());
   for (std::size_t i = 0; i < loose.size(); ++i) {
+    if (loose[i].is_resting) continue;
     dBodyCopyPosition(loose[i].ode, raw[i].position);
     dBodyCopyQuaternion(loose[i].ode, raw[i].rotation);
     std::copy_n(dBodyGetLinearVel(loose[i].ode), 3, raw[i].linear);
@@ -155,6 +157,7 @@ void PhysicsWorld::Impl::KeepRaw() {
 
 void PhysicsWorld::Impl::PutRawBack() {
   for (std::size_t i = 0; i < loose.size(); ++i) {
+    if (loose[i].is_resting) continue;
     const RawState& at = raw[i];
     dBodySetPosition(loose[i].ode, at.position[0], at.position[1], at.position[2]);
     dBodySetQuaternion(loose[i].ode, at.rotation);
@@ -170,7 +173,7 @@ void PhysicsWorld::Impl::NoteBroken() {
   if (broken >= 0) return;
   for (std::size_t i = 0; i < loose.size(); ++i) {
     const LooseBody& body = loose[i];
-    if (body.held) continue;
+    if (body.held || body.is_resting) continue;
     const Vector3d v = ToEigen(dBodyGetLinearVel(body.ode)),
                    w = ToEigen(dBodyGetAngularVel(body.ode));
     const double after =

@@ -41,8 +41,9 @@ struct HeldBody {
 /// All that changes about a PhysicsWorld, in the order in which bodies were added.
 struct PhysicsState {
   std::vector<BodyState> bodies;
-  std::vector<HeldBody> held;  ///< by loose body
-  BodyId broken{-1};           ///< see PhysicsWorld::broken
+  std::vector<HeldBody> held;            ///< by loose body
+  BodyId broken{-1};                     ///< see PhysicsWorld::broken
+  std::vector<BodyId> resting, reached;  ///< see PhysicsWorld::LetRest, IsReached
 };
 
 /// Two bodies that touch; where they do in several points, those are summed up.
@@ -98,6 +99,17 @@ class PhysicsWorld {
   /// Moves a held body in the one that holds it, by `way_W` [m] in world axes. @pre it is held.
   void ShiftHeld(BodyId loose, const Eigen::Vector3d& way_W);
   bool IsHeld(BodyId loose) const;
+
+  /// For what rolls at the least touch: from the step on in which it hardly moves and what never
+  /// moves holds it up from straight below, it rests. It keeps its pose bit for bit and costs next
+  /// to nothing, until a driven body, a held one or a loose one that does not rest touches it, it
+  /// is put elsewhere, or the ground is shaken. What was reached rests no more.
+  /// @pre body is loose
+  void LetRest(BodyId loose);
+  bool IsResting(BodyId loose) const;  ///< @pre body is loose
+  /// A driven or held body has touched it in some step so far, or a loose one that was reached
+  /// itself. What was not moves by its own weight alone, and what it moves, too. @pre body is loose
+  bool IsReached(BodyId loose) const;
   BodyState GetState(BodyId body) const;
 
   /// Acceleration added to every loose body's own weight during the next step(s), in world axes
@@ -108,7 +120,8 @@ class PhysicsWorld {
   void Step();  ///< advances by params().time_step
   std::uint64_t num_steps() const;
   int num_contacts() const;  ///< contact points of the last step
-  /// What touched at the beginning of the last step; held bodies and their grip left out.
+  /// What touched at the beginning of the last step; held bodies and their grip left out, and what
+  /// rests on something.
   const std::vector<Touch>& touches() const;
   /// The first loose body that gained energy which nothing gave it: within one step more than
   /// kUnexplained beyond what gravity, shaking and the fastest surface that touched anything can
@@ -118,7 +131,7 @@ class PhysicsWorld {
   /// [J/kg] Enough for 0.7 m/s from rest, or 2.5 cm of height. What repairing ordinary penetrations
   /// gives lies below a third of it.
   static constexpr double kUnexplained = 0.25;
-  /// What touches now, without a step. Costs about as much as one.
+  /// What touches now, without a step; of what rests, nothing. Costs about as much as one.
   std::vector<Touch> FindTouches();
   /// The deepest touch of a driven body with static ones but `except`, or nothing. Looks at shapes
   /// only when the body has moved since it was asked last. @pre body is driven.
