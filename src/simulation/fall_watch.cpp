@@ -6,7 +6,9 @@ world::Fall FallWatch::Look(const RobotSimulator& simulator, int object) {
   const bool is_held = !simulator.HolderOf(object).empty();
   if (!is_held && !was_free_) stands_on_robot_ = simulator.StandsOnRobot(object);
   was_free_ = !is_held;
-  return detector_.Update(simulator.PoseOf(object), is_held, simulator.time(),
+  geometry::Pose3 X_MO = simulator.PoseOf(object);
+  if (simulator.IsBall(object) && X_MO.IsFinite()) X_MO.rotation.setIdentity();
+  return detector_.Update(X_MO, is_held, simulator.time(),
                           stands_on_robot_ ? simulator.X_MB() : geometry::Pose3());
 }
 

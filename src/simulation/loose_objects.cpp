@@ -21,6 +21,7 @@ void LooseObjects::AddRigid(const world::ObjectState& object, const Pose3& X_BO)
   objects_.push_back(object);
   models_.push_back(world_.RequireModel(object.model));
   names_.push_back(object.name);
+  rolling_.push_back(geometry::Rolling::kNot);
   bodies_.push_back(-1);
   X_BO_start_.push_back(X_BO);
 }
@@ -29,9 +30,25 @@ void LooseObjects::AddLoose(const world::ObjectState& object, const Pose3& X_BO,
   if (is_carried) carried_.push_back(size());
   AddRigid(object, X_BO);
   const world::ObjectModel& model = ModelOf(size() - 1);
+  if (object.attached_to.empty()) {
+    rolling_.back() =
+        geometry::RollingOf(model.collisions, model.mass_properties.p_BBcm, object.X_MO.rotation);
+  }
+  const Variation variation = VariationOf(size() - 1);
   bodies_.back() =
-      physics_->AddLoose(Varied(model.mass_properties, variation_),
-                         Varied(model.collisions, variation_), {object.X_MO, object.V_MO});
+      physics_->AddLoose(Varied(model.mass_properties, variation),
+                         Varied(model.collisions, variation), {object.X_MO, object.V_MO});
+  if (rolling_.back() != geometry::Rolling::kNot) physics_->LetRest(bodies_.back());
+}
+
+Variation LooseObjects::VariationOf(int object) const {
+  Variation variation = variation_;
+  if (RollingOf(object) == geometry::Rolling::kNot) return variation;
+  const Variation none;
+  variation.com_offset = none.com_offset;
+  variation.com_height_factor = none.com_height_factor;
+  variation.radius_factor = none.radius_factor;
+  return variation;
 }
 
 void LooseObjects::TakeOut(const Pose3& X_MB) {
@@ -92,7 +109,7 @@ void LooseObjects::Put(int object, const physics::BodyState& state) {
 std::vector<GraspableObject> LooseObjects::Graspable() const {
   std::vector<GraspableObject> graspable;
   for (int i = 0; i < size(); ++i) {
-    const geometry::MassProperties mass = Varied(ModelOf(i).mass_properties, variation_);
+    const geometry::MassProperties mass = Varied(ModelOf(i).mass_properties, VariationOf(i));
     graspable.push_back({bodies_[i], mass.mass, mass.p_BBcm});
   }
   return graspable;
@@ -100,7 +117,7 @@ std::vector<GraspableObject> LooseObjects::Graspable() const {
 
 double LooseObjects::FrictionOf(int object) const {
   double friction = HUGE_VAL;
-  for (const auto& shape : Varied(ModelOf(object).collisions, variation_)) {
+  for (const auto& shape : Varied(ModelOf(object).collisions, VariationOf(object))) {
     friction = std::min(friction, shape.friction);
   }
   return friction;

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "geometry/rolling.h"
 #include "hires/physics/physics_world.h"
 #include "hires/simulation/variation.h"
 #include "hires/world/world.h"
@@ -20,6 +21,9 @@ class LooseObjects {
   LooseObjects(const world::World& world, const Variation& variation,
                physics::PhysicsWorld* physics);
 
+  /// What rolls from where it lies (geometry::RollingOf) has its middle and its radius as its model
+  /// says, whatever the variation: else it would not lie still there. It may rest until it is
+  /// touched.
   /// @param object  as it starts.  @param X_BO  where that is, seen from the base.
   /// @param is_carried  it stands on the robot.
   void AddLoose(const world::ObjectState& object, const geometry::Pose3& X_BO, bool is_carried);
@@ -36,6 +40,8 @@ class LooseObjects {
   const world::ObjectModel& ModelOf(int object) const;
   bool IsLoose(int object) const { return bodies_.at(object) >= 0; }
   physics::BodyId BodyOf(int object) const { return bodies_[object]; }  ///< @pre IsLoose(object)
+  /// How it rolls from where it lay at the start; kNot of one that was held then.
+  geometry::Rolling RollingOf(int object) const { return rolling_.at(object); }
   std::optional<int> WithBody(physics::BodyId body) const;
 
   /// @param X_MB  the base now.
@@ -51,6 +57,7 @@ class LooseObjects {
 
  private:
   std::optional<int> Free(physics::BodyId body) const;  // an object that nothing holds
+  Variation VariationOf(int object) const;
 
   const world::World& world_;
   Variation variation_;
@@ -58,6 +65,7 @@ class LooseObjects {
   std::vector<world::ObjectState> objects_;  // poses as at the start
   std::vector<std::shared_ptr<const world::ObjectModel>> models_;
   std::vector<std::string> names_;
+  std::vector<geometry::Rolling> rolling_;
   std::vector<physics::BodyId> bodies_;      // -1: not loose
   std::vector<geometry::Pose3> X_BO_start_;  // in the base frame
   std::vector<int> carried_;

@@ -176,10 +176,19 @@ std::optional<int> RobotSimulator::broken_object() const {
 bool RobotSimulator::IsTouched(int object) const {
   if (!HolderOf(object).empty()) return true;
   const physics::BodyId body = objects_->BodyOf(object);
+  if (physics_->IsResting(body)) return true;
   const std::vector<physics::Touch>& touches = physics_->touches();
   return std::any_of(touches.begin(), touches.end(), [&](const physics::Touch& touch) {
     return touch.loose == body || touch.other == body;
   });
+}
+
+bool RobotSimulator::IsReached(int object) const {
+  return !objects_->IsLoose(object) || physics_->IsReached(objects_->BodyOf(object));
+}
+
+bool RobotSimulator::IsBall(int object) const {
+  return objects_->RollingOf(object) == geometry::Rolling::kAllWays;
 }
 
 bool RobotSimulator::StandsOnRobot(int object) const {

@@ -4,7 +4,9 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <memory>
 #include <optional>
+#include <utility>
 
 #include "hires/imagination/rollout.h"
 #include "support/rounds.h"
@@ -13,6 +15,7 @@
 namespace hires::imagination::load_monitor_test {
 namespace {
 
+using hires::test_support::AddModel;
 using hires::test_support::OnTray;
 using hires::test_support::RoomScene;
 using hires::test_support::StandingAt;
@@ -28,9 +31,10 @@ struct Watched {
       : Watched(LoadOf(models), rollout, standing, variation) {}
   explicit Watched(const world::WorldState& objects, const RolloutParams& rollout = {},
                    const world::StandingCriterion& standing = {},
-                   const simulation::Variation& variation = {}, const Purpose& purpose = {})
+                   const simulation::Variation& variation = {}, const Purpose& purpose = {},
+                   const std::shared_ptr<const simulation::Scene>& scene = RoomScene())
       : params(rollout),
-        simulator(RoomScene(), variation, objects, StandingAt(kStart), base::Rng(1)),
+        simulator(scene, variation, objects, StandingAt(kStart), base::Rng(1)),
         monitor(&simulator, params, standing, purpose) {}
 
   static world::WorldState LoadOf(const std::vector<std::string>& models) {
@@ -313,6 +317,98 @@ TEST(LoadMonitorTest, NothingIsSettledWhileABystanderMoves) {
   watched.Drive(0.0, 0.0, 2.0);
   EXPECT_TRUE(watched.monitor.IsSettled());
   EXPECT_EQ(ToString(watched.monitor.WhyNotWell()), "");
+}
+
+// ----------------------------------------------------------------- what rolls
+
+constexpr double kBallRadius = 0.1;
+
+/// The room with a ball, whose origin is its middle.
+std::shared_ptr<const simulation::Scene> SceneWithBall() {
+  world::World room = hires::test_support::Room();
+  const geometry::Sphere sphere{kBallRadius};
+  world::ObjectModel ball;
+  ball.name = "ball";
+  ball.mass_properties = {0.4, Eigen::Vector3d::Zero(), geometry::SolidInertia(sphere, 0.4)};
+  ball.collisions.push_back(hires::test_support::Shape("ball", sphere, Eigen::Vector3d::Zero()));
+  AddModel(&room, ball);
+  ball.name = "lifted_ball";  // its origin is its lowest point
+  ball.mass_properties.p_BBcm.z() = ball.collisions[0].X_BS.translation.z() = kBallRadius;
+  AddModel(&room, ball);
+  room.hash = room.ComputeHash();
+  return simulation::MakeScene(std::move(room), hires::test_support::TrayRobot());
+}
+
+world::ObjectState BallAt(const std::string& name, double x, double y = 0.0) {
+  world::ObjectState ball = OnFloor(name, "ball", x);
+  ball.X_MO.translation.y() += y;
+  ball.X_MO.translation.z() = kBallRadius;
+  return ball;
+}
+
+/// All that a rollout draws of loose things, off.
+simulation::Variation Off() {
+  simulation::Variation off;
+  off.com_offset = {0.002, -0.001};
+  off.com_height_factor = 1.1;
+  off.radius_factor = 0.9;
+  off.friction_factor = 0.5;
+  return off;
+}
+
+TEST(LoadMonitorTest, ABallThatNothingTouchesStaysWhereItIsWhateverIsDrawn) {
+  world::ObjectState turned = BallAt("ball2", 1.2, 0.8);
+  turned.X_MO.rotation = geometry::RotationFromRpy(1.2, 0.4, 0.3);
+  world::ObjectState lifted = BallAt("ball3", 1.2, -0.8);
+  lifted.model = "lifted_ball";
+  lifted.X_MO.translation.z() = 0.0;
+  world::ObjectState lying = OnFloor("mill1", "mill", 2.5);
+  lying.X_MO.rotation = geometry::RotationFromRpy(0.0, 1.5707963267948966, 0.0);
+  lying.X_MO.translation.z() = 0.037;
+  const world::WorldState objects{{BallAt("ball1", 1.2), turned, lifted, lying}};
+  Watched watched(objects, {}, {}, Off(), {}, SceneWithBall());
+  watched.Drive(0.3, 0.0, 0.5);
+  watched.Drive(0.0, 0.0, 5.0);
+  watched.monitor.Conclude();
+  EXPECT_EQ(ToString(watched.monitor.WhyNotWell()), "");
+  EXPECT_EQ(watched.monitor.falls(), 0);
+  for (int i = 0; i < 4; ++i) {
+    const geometry::Pose3 X_MO = watched.simulator.PoseOf(i);
+    EXPECT_LT((X_MO.translation - objects.objects[i].X_MO.translation).norm(), 0.001);
+    EXPECT_LT(X_MO.rotation.angularDistance(objects.objects[i].X_MO.rotation), 0.001);
+    EXPECT_FALSE(watched.simulator.IsReached(i));
+  }
+}
+
+TEST(LoadMonitorTest, ABallThatTheRobotHitsRollsAndIsNamedHoweverItIsTurned) {
+  for (const double roll : {0.0, 1.2}) {
+    world::ObjectState ball = BallAt("ball1", 0.6);
+    ball.X_MO.rotation = geometry::RotationFromRpy(roll, 0.0, 0.0);
+    const world::WorldState objects{{ball, BallAt("ball2", 1.2), BallAt("ball3", 1.2, 1.0)}};
+    Watched watched(objects, {}, {}, Off(), {}, SceneWithBall());
+    watched.Drive(0.8, 0.0, 0.8);
+    watched.Drive(0.0, 0.0, 1.5);
+    watched.monitor.Conclude();
+    EXPECT_GT(watched.simulator.PoseOf(0).translation.x(), ball.X_MO.translation.x() + 0.2);
+    EXPECT_EQ(ToString(watched.monitor.WhyNotWell()), "knocked_over: ball1, ball2")
+        << "the second was hit by the first";
+    EXPECT_EQ(watched.monitor.falls(), 2);
+  }
+}
+
+TEST(LoadMonitorTest, WhatMovesByItselfIsNoFallUntilTheRobotReachesIt) {
+  world::ObjectState rolling = BallAt("ball1", 1.2);
+  rolling.V_MO.linear.y() = 0.3;
+  rolling.V_MO.angular.x() = -3.0;
+  world::ObjectState tips = OnFloor("tower1", "tower", 2.0);
+  tips.V_MO.angular.x() = 6.0;
+  Watched watched({{rolling, tips}}, {}, {}, {}, {}, SceneWithBall());
+  watched.Drive(0.0, 0.0, 2.0);
+  EXPECT_GT(watched.simulator.PoseOf(0).translation.y(), kStart.y + 0.3);
+  EXPECT_GT(geometry::TiltOf(watched.simulator.PoseOf(1).rotation), 1.0);
+  watched.monitor.Conclude();
+  EXPECT_EQ(ToString(watched.monitor.WhyNotWell()), "");
+  EXPECT_EQ(watched.monitor.falls(), 0);
 }
 
 TEST(LoadMonitorTest, WhatTheActionHandlesIsWatchedWhereverItStands) {

@@ -71,6 +71,28 @@ TEST_F(LooseObjectsTest, ABoxThatAModelSaysIsAsHeavyAsItIsLarge) {
               1e-12);
 }
 
+TEST_F(LooseObjectsTest, WhatRollsHasItsMiddleWhereItsModelSays) {
+  variation_.com_offset = {0.002, 0.001};
+  variation_.com_height_factor = 1.1;
+  objects_.emplace(room_, variation_, &physics_);
+  world::ObjectState lying = MillAt("mill4", 1.0);
+  lying.X_MO.rotation = geometry::RotationFromRpy(0.0, 1.5707963267948966, 0.0);
+  world::ObjectState held = lying;
+  held.attached_to = "hand";
+  for (const world::ObjectState& mill : {MillAt("mill5", 2.0), lying, held})
+    objects_->AddLoose(mill, kInBase, false);
+  EXPECT_EQ(objects_->RollingOf(0), geometry::Rolling::kNot);
+  EXPECT_EQ(objects_->RollingOf(1), geometry::Rolling::kAlongALine);
+  EXPECT_EQ(objects_->RollingOf(2), geometry::Rolling::kNot) << "it hangs in a hand";
+  const Eigen::Vector3d middle = room_.models.at("mill")->mass_properties.p_BBcm;
+  EXPECT_EQ(objects_->Graspable()[1].p_OOcm, middle);
+  EXPECT_EQ(objects_->Graspable()[1].mass, 2.0 * room_.models.at("mill")->mass_properties.mass);
+  for (const int stands : {0, 2}) {
+    EXPECT_NEAR(objects_->Graspable()[stands].p_OOcm.x(), 0.002, 1e-12);
+    EXPECT_NEAR(objects_->Graspable()[stands].p_OOcm.z(), 1.1 * middle.z(), 1e-12);
+  }
+}
+
 TEST_F(LooseObjectsTest, HaveTheMassAndFrictionOfTheVariation) {
   const double mass = room_.models.at("mill")->mass_properties.mass;
   ASSERT_THAT(objects_->Graspable(), SizeIs(3));

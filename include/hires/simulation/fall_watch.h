@@ -7,7 +7,7 @@ namespace hires::simulation {
 
 /// Follows one loose object of a simulator, imagined or true, and says when it falls. A thing that
 /// stands on the robot is judged from where it stands on the robot, any other from where it stands
-/// in the room.
+/// in the room. A ball never leans: it slides or drops.
 class FallWatch {
  public:
   explicit FallWatch(const world::StandingCriterion& criterion) : detector_(criterion) {}

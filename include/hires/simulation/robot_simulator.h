@@ -95,6 +95,11 @@ class RobotSimulator {
 
   /// Something touches it, or a hand holds it; as of the beginning of the last step.
   bool IsTouched(int object) const;
+  /// The robot, what it carries or holds, or something that one of these has touched has touched it
+  /// so far. What was not reached moved by its own weight alone.
+  bool IsReached(int object) const;
+  /// A ball, which stands however it is turned.
+  bool IsBall(int object) const;
 
   /// Indices of the objects that stood on a part of the robot at the start.
   const std::vector<int>& carried() const;

@@ -68,7 +68,7 @@ void LoadMonitor::Sort(const Purpose& purpose) {
     const std::string name = base::ToLower(all[i].name);
     if (is_handled || stands_on_robot || is_held) {
       objects_.push_back({i, name, stands_on_robot && !is_handled, is_held, watch});
-    } else if (world::IsUpright(standing_, all[i].X_MO)) {
+    } else if (simulator_->IsBall(i) || world::IsUpright(standing_, all[i].X_MO)) {
       bystanders_.push_back({i, name, watch});
     }
   }
@@ -85,9 +85,25 @@ bool LoadMonitor::IsHeld(const Object& object) const {
 void LoadMonitor::Look() {
   tilt_ = 0.0;
   for (Object& object : objects_) LookAt(&object);
-  for (Bystander& bystander : bystanders_) bystander.watch.Look(*simulator_, bystander.index);
+  LookAtBystanders();
   max_tilt_ = std::max(max_tilt_, tilt_);
   if (first_cause_.empty() && tilt_ > params_.shaking_tilt) first_cause_ = CauseNow(*simulator_);
+}
+
+/// What moves by its own weight alone stands where it has come to; what fell over like that is no
+/// bystander any more.
+void LoadMonitor::LookAtBystanders() {
+  const auto fell_alone = [this](Bystander& bystander) {
+    bystander.watch.Look(*simulator_, bystander.index);
+    if (!bystander.watch.detector().is_down() || simulator_->IsReached(bystander.index)) {
+      return false;
+    }
+    bystander.watch.Reset();
+    return !simulator_->IsBall(bystander.index) &&
+           !world::IsUpright(standing_, simulator_->PoseOf(bystander.index));
+  };
+  const auto kept = std::remove_if(bystanders_.begin(), bystanders_.end(), fell_alone);
+  bystanders_.erase(kept, bystanders_.end());
 }
 
 void LoadMonitor::LookAt(Object* object) {

@@ -28,9 +28,9 @@ bool FellWhileSettling(const simulation::RobotSimulator& simulator, int object,
 ///
 /// Its concern are the objects that stand on the robot or are in its hands at the start, and the
 /// one that the action takes or puts down: their tilt is what Eq. 5.1 counts. Everything else that
-/// stands upright at the start is a bystander, which must still stand when all is over. What counts
-/// as a fall is the world::StandingCriterion's to say; the thresholds of Eq. 5.1 in RolloutParams
-/// are about samples.
+/// stands upright at the start, and every ball, is a bystander, which must still stand when all is
+/// over unless nothing has reached it (RobotSimulator::IsReached). What counts as a fall is the
+/// world::StandingCriterion's to say; the thresholds of Eq. 5.1 in RolloutParams are about samples.
 class LoadMonitor {
  public:
   /// The first look finds things where they stand. What fell off the robot while it settled has
@@ -99,6 +99,7 @@ class LoadMonitor {
   void Sort(const Purpose& purpose);
   void NoteFallsWhileSettling(const std::vector<geometry::Pose3>& X_BOstart);
   void LookAt(Object* object);
+  void LookAtBystanders();
   void NoteFall(const base::Failure& fall);
   void PutBackIfDown(Object* object);
   bool IsHeld(const Object& object) const;
