@@ -92,6 +92,10 @@ bool PhysicsWorld::Impl::IsTouchedBy(LooseBody* other, LooseBody* body) {
 
 /// Whom one that wakes touches wakes, too: so round after round, until a round wakes none.
 void PhysicsWorld::Impl::WakeTouched() {
+  awake.clear();
+  for (LooseBody& body : loose) {
+    if (!body.is_resting) awake.push_back(&body);
+  }
   bool is_one_woken = true;
   while (is_one_woken) {
     is_one_woken = false;
@@ -100,12 +104,12 @@ void PhysicsWorld::Impl::WakeTouched() {
       const bool is_touched =
           std::any_of(groups.begin() + 1, groups.end(),
                       [&](Group& group) { return IsTouchedByGroup(&group, &body); }) ||
-          std::any_of(loose.begin(), loose.end(), [&](LooseBody& other) {
-            return !other.is_resting && IsTouchedBy(&other, &body);
-          });
+          std::any_of(awake.begin(), awake.end(),
+                      [&](LooseBody* other) { return IsTouchedBy(other, &body); });
       if (!is_touched) continue;
       Wake(&body);
       PlaceLoose(&body);
+      awake.push_back(&body);
       is_one_woken = true;
     }
   }
