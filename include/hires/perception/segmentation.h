@@ -22,6 +22,8 @@ struct Segmentation {
   /// go on there, and nothing that is seen speaks against it.
   std::vector<bool> may_be_beside{};
   int num_left_out{0};  ///< points clearly above the table, not far beside it, that are of no thing
+  int num_over{
+      0};  ///< where there is no thing: points above what is seen of the table, however high
 };
 
 /// Tells things on a table from it and from each other, without knowing them: what is above the

@@ -26,6 +26,7 @@ struct Table {
   Eigen::Vector3d along_x{Eigen::Vector3d::UnitX()};        ///< of length 1, as is the next;
   Eigen::Vector3d along_y{-Eigen::Vector3d::UnitZ()};       ///< with the normal right-handed
   geometry::Polygon outline{};  ///< convex, of its measured points, FromAbove [m]
+  double noise{1.0};            ///< [DepthNoise] sd by which its points are judged
 };
 
 /// How the camera stands, where somebody knows it.
@@ -44,10 +45,13 @@ struct TableParams {
 };
 
 /// The plane with the most points of which the camera is on the upper side (FindPlaneByRansac, then
-/// least squares). Where two tables are seen, the larger one in the picture.
+/// least squares). Where two tables are seen, the larger one in the picture. Points that scatter
+/// more on it than a depth camera's are judged by their own scatter (Table::noise).
 /// @param stand  without it the camera is taken to be upright, or to look straight down from at
 /// most 2.5 m, and a table is any plane that is no wall then; the floor too, where none as large as
-/// params has it is 0.45 m or more above it.
+/// params has it is 0.45 m or more above it. Over a floor wider than 2.5 m a plane 0.55 m or more
+/// above it on which things stand may be smaller: it needs 200 points and `min_share` of what is
+/// there but upright.
 /// @return nothing where no plane holds `min_share` of the points, and 200 of them.
 std::optional<Table> FindTable(const PointCloud& cloud, const std::optional<CameraStand>& stand,
                                const TableParams& params);

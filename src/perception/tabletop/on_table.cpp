@@ -29,8 +29,8 @@ PlaneCell PlaneCellOf(const Eigen::Vector2d& p) {
           static_cast<int>(std::floor(p.y() / kPlaneCell))};
 }
 
-double ToleranceBelow(const Eigen::Vector3d& p_C) {
-  return std::max(kMinBelow, kBelow * DepthNoise(p_C.z()));
+double ToleranceBelow(const Table& table, const Eigen::Vector3d& p_C) {
+  return std::max(kMinBelow, kBelow * table.noise * DepthNoise(p_C.z()));
 }
 
 std::set<PlaneCell> CellsBelow(const PointCloud& cloud, const Table& table) {
@@ -39,7 +39,7 @@ std::set<PlaneCell> CellsBelow(const PointCloud& cloud, const Table& table) {
     if (!IsMeasured(point)) continue;
     const Eigen::Vector3d p = point.cast<double>();
     const double depth = -table.HeightOf(p);
-    if (depth > ToleranceBelow(p) && depth < kFarthestBelow)
+    if (depth > ToleranceBelow(table, p) && depth < kFarthestBelow)
       cells.insert(PlaneCellOf(table.FromAbove(p)));
   }
   return cells;
@@ -49,6 +49,7 @@ std::set<PlaneCell> CellsBelow(const PointCloud& cloud, const Table& table) {
 struct Part {
   std::vector<int> members{};  // surfels
   bool is_within{false}, is_large{false}, is_beside{false};
+  bool goes_below{false}, hangs{false};
 };
 
 class Judge {
@@ -60,7 +61,8 @@ class Judge {
 
  private:
   bool IsLarge(const Part& part) const;
-  bool GoesOnBelow(const Part& part) const;
+  std::set<PlaneCell> FeetOf(const Part& part) const;
+  bool GoesOnBelow(const std::set<PlaneCell>& feet) const;
   bool IsSeenThrough(const Part& part) const;
 
   const PointCloud& cloud_;
@@ -75,9 +77,15 @@ void Judge::Look(Part* part) const {
     return geometry::Contains(table_.outline, table_.FromAbove(all_.surfels[i].p_C));
   });
   part->is_within = 2 * within >= static_cast<std::ptrdiff_t>(part->members.size());
-  if (part->is_within) return;
+  const std::set<PlaneCell> feet = FeetOf(*part);
+  part->goes_below = GoesOnBelow(feet);
+  part->hangs = feet.empty();
+  if (part->is_within) {  // but for walls that the table's outline reaches into
+    part->is_large = part->is_beside = part->goes_below && IsLarge(*part);
+    return;
+  }
   part->is_large = IsLarge(*part);
-  part->is_beside = part->is_large || GoesOnBelow(*part) || IsSeenThrough(*part);
+  part->is_beside = part->is_large || part->goes_below || IsSeenThrough(*part);
 }
 
 bool Judge::IsLarge(const Part& part) const {
@@ -89,12 +97,16 @@ bool Judge::IsLarge(const Part& part) const {
   return largest > kLargestThing;
 }
 
-bool Judge::GoesOnBelow(const Part& part) const {
+std::set<PlaneCell> Judge::FeetOf(const Part& part) const {
   std::set<PlaneCell> feet;
   for (const int i : part.members) {
     const Eigen::Vector3d& p_C = all_.surfels[i].p_C;
     if (table_.HeightOf(p_C) < kFoot) feet.insert(PlaneCellOf(table_.FromAbove(p_C)));
   }
+  return feet;
+}
+
+bool Judge::GoesOnBelow(const std::set<PlaneCell>& feet) const {
   const auto below = std::count_if(feet.begin(), feet.end(),
                                    [&](const PlaneCell& cell) { return below_.count(cell); });
   return static_cast<double>(below) > kMostBelow * static_cast<double>(feet.size());
@@ -107,7 +119,7 @@ bool Judge::IsSeenThrough(const Part& part) const {
     const int point = foot.z() > 0.0 ? seen_.PointTowards(foot) : -1;
     if (point < 0) continue;
     const Eigen::Vector3d p = cloud_.points[point].cast<double>();
-    through += -table_.HeightOf(p) > ToleranceBelow(p);
+    through += -table_.HeightOf(p) > ToleranceBelow(table_, p);
   }
   return through > kMostThrough * static_cast<double>(part.members.size());
 }
@@ -141,7 +153,8 @@ std::vector<int> WithoutBeside(const PointCloud& cloud, const Table& table, cons
     large.pop_back();
     for (const auto& [number, pairs] : touching) {
       Part& one = parts.at(number);
-      if (one.is_within || one.is_large || pairs <= kTouching) continue;
+      const bool may_stand = one.is_within && !one.goes_below && !one.hangs;
+      if (may_stand || one.is_large || pairs <= kTouching) continue;
       one.is_large = one.is_beside = true;
       large.push_back(number);
     }

@@ -45,7 +45,7 @@ std::vector<int> LabelTable(const PointCloud& cloud, const Table& table,
     if (!IsMeasured(cloud.points[i])) continue;
     const Eigen::Vector3d p = cloud.points[i].cast<double>();
     const double height = table.HeightOf(p);
-    if (height > params.surface_tolerance * DepthNoise(p.z())) {
+    if (height > params.surface_tolerance * table.noise * DepthNoise(p.z())) {
       if (height < params.max_above && IsNear(table.outline, table.FromAbove(p), params.max_beside))
         above.push_back(static_cast<int>(i));
     } else if (height > -params.max_below &&
@@ -111,7 +111,17 @@ std::vector<bool> AreBeside(const Table& table, const SurfelCloud& all,
 // So far above the plane that of a whole table's points none is by noise.
 bool IsClearlyAbove(const Table& table, const Eigen::Vector3d& p_C,
                     const SegmentationParams& params) {
-  return table.HeightOf(p_C) > 2.0 * params.surface_tolerance * DepthNoise(p_C.z());
+  return table.HeightOf(p_C) > 2.0 * params.surface_tolerance * table.noise * DepthNoise(p_C.z());
+}
+
+int CountOver(const Table& table, const PointCloud& cloud, const SegmentationParams& params) {
+  return static_cast<int>(
+      std::count_if(cloud.points.begin(), cloud.points.end(), [&](const Eigen::Vector3f& point) {
+        if (!IsMeasured(point)) return false;
+        const Eigen::Vector3d p = point.cast<double>();
+        return IsClearlyAbove(table, p, params) &&
+               geometry::Contains(table.outline, table.FromAbove(p));
+      }));
 }
 
 Segmentation SegmentNear(const Table& table, Outline outline, const PointCloud& cloud,
@@ -138,6 +148,7 @@ Segmentation SegmentNear(const Table& table, Outline outline, const PointCloud& 
   }
   out.may_be_beside = AreBeside(table, surfels, parts.part, out.num_things);
   LabelFloors(cloud, table, parts.openings, &out.labels);
+  if (out.num_things == 0) out.num_over = CountOver(table, cloud, params);
   return out;
 }
 

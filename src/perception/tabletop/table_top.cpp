@@ -2,6 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
+#include <tuple>
+#include <utility>
 
 namespace hires::perception {
 namespace {
@@ -14,6 +17,8 @@ constexpr int kMinOver = 3;      // times as many points in a cell's plane as be
 constexpr int kMinUnder = 2;     // likewise as above it: a wall goes on there, and so does a thing,
                                  // whose cells a table can do without
 constexpr double kBeside = 3.0;  // tolerances up to which points are beside a plane
+constexpr double kColumn = 0.05;         // [m] edge of columns of points
+constexpr std::size_t kStacked = 60000;  // points in all of them
 
 /// -1, 1 where it lies so little below or above the plane that a wall which crosses it there has as
 /// many points on it, else 0.
@@ -112,6 +117,41 @@ bool Pieces::IsAtBorder(std::size_t point) const {
                                IsCellKept(cell + columns_ - 1) && IsCellKept(cell + columns_ + 1));
 }
 
+/// A point in a column that stands on a level plane.
+struct Stacked {
+  std::int64_t column;
+  double height;  // [m] over that plane
+  std::size_t point;
+};
+
+std::vector<Stacked> InColumns(const std::vector<TablePoint>& points, const Table& level) {
+  const std::size_t step = points.size() / kStacked + 1;
+  std::vector<Stacked> stacked;
+  stacked.reserve(points.size() / step + 1);
+  for (std::size_t i = 0; i < points.size(); i += step) {
+    const Eigen::Array2d cell = (level.FromAbove(points[i].p) / kColumn).array().floor();
+    const auto column = static_cast<std::int64_t>(cell.x()) * (std::int64_t{1} << 32) +
+                        static_cast<std::int64_t>(cell.y());
+    stacked.push_back({column, level.HeightOf(points[i].p), i});
+  }
+  std::sort(stacked.begin(), stacked.end(), [](const Stacked& a, const Stacked& b) {
+    return std::tie(a.column, a.height, a.point) < std::tie(b.column, b.height, b.point);
+  });
+  return stacked;
+}
+
+/// How many of a column lie at most so far below or above one of its points.
+std::ptrdiff_t CountWithin(const std::vector<Stacked>& stacked, const Stacked& one, double reach) {
+  const auto is_lower = [](const Stacked& a, const std::pair<std::int64_t, double>& b) {
+    return std::tie(a.column, a.height) < std::tie(b.first, b.second);
+  };
+  const auto from = [&](double height) {
+    return std::lower_bound(stacked.begin(), stacked.end(), std::pair(one.column, height),
+                            is_lower);
+  };
+  return from(one.height + reach) - from(one.height - reach);
+}
+
 }  // namespace
 
 bool Supports(const TablePlane& plane, const TablePoint& point) {
@@ -148,6 +188,20 @@ TableTop TopOf(const std::vector<TablePoint>& points, const Table& table) {
     if (pieces.IsAtBorder(i)) top.border.push_back(on_it[i].p);
   }
   return top;
+}
+
+std::vector<TablePoint> WithoutUpright(const std::vector<TablePoint>& points, const Table& level,
+                                       double tolerances) {
+  const std::vector<Stacked> stacked = InColumns(points, level);
+  std::vector<TablePoint> out;
+  for (const Stacked& one : stacked) {
+    const TablePoint& point = points[one.point];
+    const double reach = tolerances * point.tolerance;
+    const std::ptrdiff_t on_it = CountWithin(stacked, one, reach);
+    const std::ptrdiff_t beside = CountWithin(stacked, one, kBeside * reach) - on_it;
+    if (on_it >= kMinUnder * beside) out.push_back(point);
+  }
+  return out;
 }
 
 }  // namespace hires::perception

@@ -30,4 +30,11 @@ struct TableTop {
 
 TableTop TopOf(const std::vector<TablePoint>& points, const Table& table);
 
+/// Points without those that have as much closely below and above them, as on walls and on what
+/// stands upright; what remains is about level. Of very many points only some are looked at.
+/// @param level       along what the others are
+/// @param tolerances  of each point, within which what is as high as it is
+std::vector<TablePoint> WithoutUpright(const std::vector<TablePoint>& points, const Table& level,
+                                       double tolerances);
+
 }  // namespace hires::perception
