@@ -172,6 +172,22 @@ TEST_F(RecogniseCommandTest, NothingIsInvented) {
   EXPECT_THAT(nothing.out, HasSubstr("no point of the cloud was measured: no table is seen"));
 }
 
+TEST_F(RecogniseCommandTest, WhatCannotBeToldIsNotCalledNothing) {
+  const perception::PointCloud dense = Breakfast();
+  perception::PointCloud sparse;
+  for (std::size_t i = 0; i < dense.points.size(); i += 29)
+    sparse.points.push_back(dense.points[i]);
+  sparse.width = static_cast<int>(sparse.points.size());
+  sparse.height = 1;
+  const Ended ended = Recognise({Write(sparse)});
+  EXPECT_EQ(ended.code, kExitUndecided);
+  EXPECT_THAT(ended.out, HasSubstr("table 0.70 m below the camera"));
+  EXPECT_THAT(ended.out, HasSubstr("it cannot be told what is on it"));
+  EXPECT_THAT(ended.out, HasSubstr("points over it tell no thing: they are too few for their "
+                                   "distance, or scatter too much; take a cloud from nearer"));
+  EXPECT_THAT(ended.out, Not(HasSubstr("nothing")));
+}
+
 TEST_F(RecogniseCommandTest, ACloudWithoutPointsIsCalledEmpty) {
   const Ended empty = Recognise({Write({}), "--json", Path("seen.json")});
   EXPECT_EQ(empty.code, kExitBadInput) << "there was nothing to look at";

@@ -118,6 +118,12 @@ std::string DoubtText(const Recognition& seen) {
   constexpr double kStraightOn = 0.955;  // cosine
   if (seen.segmentation.table && -seen.segmentation.table->normal.z() > kStraightOn)
     text += "it is seen from straight above: a wall before the camera would look the same\n";
+  if (seen.segmentation.table && seen.segmentation.table->noise > 1.0) {
+    text += fmt::format(
+        "its points scatter {:.1f} times as much as a Kinect's: things may be in pieces or "
+        "missing\n",
+        seen.segmentation.table->noise);
+  }
   if (!unsure.empty()) {
     text += fmt::format("may be beside the table, which is hidden about them: {}\n",
                         base::Join(unsure, ", "));
@@ -129,16 +135,30 @@ std::string DoubtText(const Recognition& seen) {
   return text;
 }
 
-std::string TableText(const Recognition& seen, const RecogniseOptions& options) {
+/// Whether over the table there is as much as a thing has, and none is told.
+bool IsUntold(const Recognition& seen, int min_points) {
+  return seen.segmentation.num_over >= min_points;
+}
+
+std::string UntoldText(const Recognition& seen) {
+  return fmt::format(
+      "{} points over it tell no thing: they are too few for their distance, or scatter too much; "
+      "take a cloud from nearer, or one with more points\n",
+      seen.segmentation.num_over);
+}
+
+std::string TableText(const Recognition& seen, const RecogniseOptions& options, bool is_untold) {
   if (!seen.segmentation.table) return "no table is seen\n";
   const perception::Table& table = *seen.segmentation.table;
   const Eigen::Array2d extent = ExtentOf(table.outline);
   std::string text =
       fmt::format("table {:.2f} m below the camera, {:.2f} m x {:.2f} m of it seen; {} on it\n",
                   table.offset, extent.maxCoeff(), extent.minCoeff(),
-                  seen.detections.empty()       ? std::string("nothing")
+                  is_untold                     ? std::string("it cannot be told what is")
+                  : seen.detections.empty()     ? std::string("nothing")
                   : seen.detections.size() == 1 ? std::string("one thing")
                                                 : fmt::format("{} things", seen.detections.size()));
+  if (is_untold) text += UntoldText(seen);
   text += DoubtText(seen);
   if (seen.detections.empty()) return text;
   std::vector<std::vector<std::string>> rows{
@@ -223,20 +243,21 @@ int RunRecogniseVerb(const RecogniseOptions& options, const std::string& package
   CheckUnit(cloud, options.cloud);
   const perception::Recogniser recogniser(config.catalogue, config.params);
   const Recognition seen = recogniser.Recognise(cloud, std::nullopt, base::Rng(kSeed));
+  const bool is_untold = IsUntold(seen, config.params.segmentation.parts.min_points);
   const bool is_measured =
       std::any_of(cloud.points.begin(), cloud.points.end(), perception::IsMeasured);
   if (options.json == "-") {
     std::cout << ToJson(seen, options).dump(2) << '\n';
   } else {
     std::cout << (is_measured ? "" : "no point of the cloud was measured: ")
-              << TableText(seen, options);
+              << TableText(seen, options, is_untold);
   }
   if (!options.json.empty() && options.json != "-")
     reports::WriteJson(ToJson(seen, options), options.json);
   if (!options.labels.empty())
     perception::WriteLabelledPcd(cloud, seen.segmentation.labels, options.labels);
   if (options.json != "-") SaySaved({options.json, options.labels});  // else it would be no JSON
-  return seen.segmentation.table ? kExitRecommended : kExitUndecided;
+  return seen.segmentation.table && !is_untold ? kExitRecommended : kExitUndecided;
 }
 
 }  // namespace hires::cli

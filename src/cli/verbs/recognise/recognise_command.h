@@ -19,7 +19,7 @@ struct RecogniseOptions {
 void AddRecogniseVerb(CLI::App* app, RecogniseOptions* options);
 
 /// Tells what stands on a table in the file of a cloud.
-/// @return kExitRecommended, kExitUndecided where no table is seen.
+/// @return kExitRecommended, kExitUndecided where no table is seen, or not what is on it.
 /// @throws base::ConfigError for bad input.
 int RunRecogniseVerb(const RecogniseOptions& options, const std::string& package_folder);
 
