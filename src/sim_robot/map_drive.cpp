@@ -135,7 +135,7 @@ bool MapDriver::Play(const std::string& area, const std::function<bool()>& cance
     moments.push_back(Look(simulator, moments.size()));
   };
   const auto result =
-      imagination::PlayRollout(rollout_, action, num_legs_++, {cancelled, look, {}, {}, {}, 0.0});
+      imagination::PlayRollout(rollout_, action, num_legs_++, {cancelled, look});
   if (!result) return false;
   Record(moments);
   time_ += result->simulated;

@@ -115,6 +115,34 @@ TEST(RolloutReachTest, WhatStaysIsWhatPlayingAgainGives) {
   EXPECT_GE(num_refused, 4);
 }
 
+TEST(RolloutReachTest, WhoWatchesIsToldWhenARolloutBeginsAndBeginsAgain) {
+  const auto begins_of = [](const RolloutSetup& setup) {
+    int num_begins = 0;
+    double last = 0.0;
+    RolloutHooks hooks;
+    hooks.on_begin = [&](const simulation::RobotSimulator& simulator) {
+      EXPECT_NEAR(simulator.time(), setup.params.settling_time, 1e-9);
+      last = simulator.time();
+      ++num_begins;
+    };
+    const auto goes_on = [&](const simulation::RobotSimulator& simulator) {
+      EXPECT_GE(num_begins, 1);
+      EXPECT_GE(simulator.time(), last) << "nobody was told that it began again";
+      last = simulator.time();
+    };
+    hooks.on_look = goes_on;
+    hooks.on_sample = [&](const simulation::RobotSimulator& simulator, double) {
+      goes_on(simulator);
+    };
+    hooks.on_late_cycle = hooks.on_sample;
+    EXPECT_TRUE(PlayRollout(setup, kFast, 0, hooks));
+    return num_begins;
+  };
+  EXPECT_EQ(begins_of(Start()), 1);
+  EXPECT_EQ(begins_of(Start({OnFloor("far", 2.7, 0.3)})), 1);
+  EXPECT_EQ(begins_of(Start({OnFloor("near", 3.0, 2.3)})), 2);
+}
+
 TEST(RolloutReachTest, WhatIsFarAwayMayChange) {
   const RolloutSetup before = Start({OnFloor("far", 2.7, 0.3)});
   EXPECT_TRUE(Stays(before, before));

@@ -130,11 +130,11 @@ TEST(RolloutTest, WhatWasKnockedOverBeforePhysicsBrokeCounts) {
     bool is_down = false, is_broken = false, is_down_before = false;
     simulation::FallWatch watch(setup.standing);
     RolloutHooks hooks;
+    hooks.on_begin = [&](const simulation::RobotSimulator&) {
+      watch = simulation::FallWatch(setup.standing);
+      is_down = is_broken = is_down_before = false;
+    };
     hooks.on_look = [&](const simulation::RobotSimulator& simulator) {
-      if (simulator.time() <= setup.params.settling_time + 0.0015) {  // it began again
-        watch = simulation::FallWatch(setup.standing);
-        is_down = is_broken = is_down_before = false;
-      }
       if (simulator.GetWorldState().objects.empty()) return;
       if (simulator.broken_object() && !is_broken) {
         is_broken = true;

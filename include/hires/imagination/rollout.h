@@ -59,6 +59,10 @@ struct RolloutHooks {
   std::function<bool()> cancelled;  ///< asked 20 times per simulated second, or more often
   /// Called with every 20 Hz sample; must not change anything.
   std::function<void(const simulation::RobotSimulator&, double tilt)> on_sample;
+  /// Called when the load has settled and the action begins, before all below; once more where the
+  /// rollout begins again (PlayRollout): what was told before does not count. Must not change
+  /// anything.
+  std::function<void(const simulation::RobotSimulator&)> on_begin{};
   /// Called once, when it is over, with the names (lower case) of what the action was about and
   /// the robot carried that is down, as world::FallDetector says.
   std::function<void(const std::vector<std::string>& down)> on_end{};
@@ -82,7 +86,7 @@ struct RolloutHooks {
 ///
 /// What stands about is left out of physics until something comes near it, or it comes within what
 /// the base's laser is of use for (some 4 m); then the rollout begins again with it, and its hooks
-/// are called anew. So what was left out stands to the last bit as it
+/// are called anew, on_begin first. So what was left out stands to the last bit as it
 /// did at the start and has changed nothing: what is far away does not settle, and a step that the
 /// solver has to repeat is not repeated for it. Actions that move arms or head, which look at
 /// objects, are played with everything, and so are starts in which something moves or that cannot

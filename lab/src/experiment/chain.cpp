@@ -65,7 +65,7 @@ std::optional<imagination::RolloutResult> Chain::Play(const std::string& goal, L
   down_.clear();
   const auto end = [&](const std::vector<std::string>& down) { down_ = down; };
   return imagination::PlayRollout(setup_, DriveTo(goal, options_.motion_set), next_index_++,
-                                  {cancelled, look, end});
+                                  {cancelled, look, {}, end});
 }
 
 void Chain::Record(const simulation::RobotSimulator& simulator, Leg* leg) const {

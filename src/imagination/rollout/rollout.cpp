@@ -67,6 +67,7 @@ class Player {
   /// Nothing if it is cancelled, or comes near what is left out.
   std::optional<RolloutResult> Play(const RolloutHooks& hooks) {
     if (!Settle(hooks)) return std::nullopt;
+    if (hooks.on_begin) hooks.on_begin(simulator_);
     LoadMonitor monitor(&simulator_, params_, standing_, purpose_, X_BOstart_);
     const double start = next_cycle_ = start_ = simulator_.time();
     skills::Status status;

@@ -34,6 +34,17 @@ class Recorder {
   Recorder(const RolloutSetup& setup, RolloutRecording* recording, RolloutWatcher* watcher)
       : setup_(setup), begin_(BeginOf(setup)), recording_(*recording), watcher_(watcher) {}
 
+  /// It may begin again, with more of what stands about.
+  void Begin(const simulation::RobotSimulator& simulator) {
+    recording_.objects = NamesOf(simulator.GetWorldState());
+    recording_.samples.clear();
+    recording_.events.clear();
+    objects_.assign(recording_.objects.size(), Object(setup_.standing));
+    is_late_ = touches_ = false;
+    NoteFallsWhileSettling(simulator);
+    if (watcher_ != nullptr) watcher_->OnBegin();
+  }
+
   void NoteSample(const simulation::RobotSimulator& simulator) {
     RolloutSample sample;
     sample.time = TimeOf(simulator);
@@ -49,18 +60,13 @@ class Recorder {
   }
 
   void Look(const simulation::RobotSimulator& simulator) {
-    const double now = TimeOf(simulator);
-    if (!has_begun_ || now <= last_look_) Begin(simulator);
-    last_look_ = now;
+    last_look_ = TimeOf(simulator);
     NoteBase(simulator);
     for (std::size_t i = 0; i < objects_.size(); ++i) NoteObject(simulator, static_cast<int>(i));
   }
 
   void NoteLateCycle(const simulation::RobotSimulator& simulator, double delay) {
-    const double now = TimeOf(simulator);
-    if (!has_begun_ || now <= last_late_cycle_ || now < last_look_) Begin(simulator);
-    last_late_cycle_ = now;
-    Say(Kind::kLateCycle, now, fmt::format("cycle late {:.2f} s", delay));
+    Say(Kind::kLateCycle, TimeOf(simulator), fmt::format("cycle late {:.2f} s", delay));
   }
 
   /// What came late while it came no further had no part in it.
@@ -88,19 +94,6 @@ class Recorder {
 
   double TimeOf(const simulation::RobotSimulator& simulator) const {
     return simulator.time() - begin_;
-  }
-
-  /// It may begin again, with more of what stands about.
-  void Begin(const simulation::RobotSimulator& simulator) {
-    recording_.objects = NamesOf(simulator.GetWorldState());
-    recording_.samples.clear();
-    recording_.events.clear();
-    objects_.assign(recording_.objects.size(), Object(setup_.standing));
-    has_begun_ = true;
-    is_late_ = touches_ = false;
-    last_look_ = last_late_cycle_ = -1.0;
-    NoteFallsWhileSettling(simulator);
-    if (watcher_ != nullptr) watcher_->OnBegin();
   }
 
   void NoteFallsWhileSettling(const simulation::RobotSimulator& simulator) {
@@ -186,8 +179,8 @@ class Recorder {
   RolloutRecording& recording_;
   RolloutWatcher* const watcher_;
   std::vector<Object> objects_;
-  double last_look_{-1.0}, last_late_cycle_{-1.0};  // [s] since the action began
-  bool has_begun_{false}, is_late_{false}, touches_{false};
+  double last_look_{0.0};  // [s] since the action began
+  bool is_late_{false}, touches_{false};
 };
 
 std::string Header(const RolloutRecording& recording) {
@@ -245,6 +238,7 @@ std::optional<RolloutRecording> RecordRollout(const RolloutSetup& setup,
   Recorder recorder(setup, &recording, watcher);
   RolloutHooks hooks;
   hooks.cancelled = cancelled;
+  hooks.on_begin = [&](const RobotSimulator& simulator) { recorder.Begin(simulator); };
   hooks.on_look = [&](const RobotSimulator& simulator) { recorder.Look(simulator); };
   hooks.on_sample = [&](const RobotSimulator& simulator, double) {
     recorder.NoteSample(simulator);

@@ -58,7 +58,6 @@ void RobotBroadcaster::PublishIdle() {
 }
 
 void RobotBroadcaster::Publish(const hires::simulation::RobotSimulator& simulator) {
-  if (simulator.time() < in_rollout_) BeginRollout();  // again, with more of what stands about
   in_rollout_ = simulator.time();
   trace_.Add(simulator);
   if (!IsDue()) return;

@@ -26,7 +26,7 @@ class RobotBroadcaster {
                    const hires::world::StandingCriterion& standing, int index, double rate,
                    ros::NodeHandle* nh);
 
-  void BeginRollout();
+  void BeginRollout();  ///< also where one begins again
   void Publish(const hires::simulation::RobotSimulator& simulator);
   void PublishIdle();  ///< keeps /clock ticking at the wall's pace while nothing is played
 

@@ -146,11 +146,12 @@ bool SimWorkerNode::PlayRange(GoalHandle goal, const imagination::RolloutSetup& 
   const RolloutGoal& wanted = *goal.getGoal();
   const hires::base::ActionCall action = FromMsg(wanted.action);
   const std::string id = goal.getGoalID().id;
-  const imagination::RolloutHooks hooks{[&] { return IsCancelled(id); },
-                                        [&](const hires::simulation::RobotSimulator& simulator,
-                                            double /*tilt*/) { broadcaster_.Publish(simulator); }};
+  using hires::simulation::RobotSimulator;
+  const imagination::RolloutHooks hooks{
+      [&] { return IsCancelled(id); },
+      [&](const RobotSimulator& simulator, double) { broadcaster_.Publish(simulator); },
+      [&](const RobotSimulator&) { broadcaster_.BeginRollout(); }};
   for (std::uint32_t i = wanted.first; i < wanted.first + wanted.count; ++i) {
-    broadcaster_.BeginRollout();
     const auto played = imagination::PlayRollout(setup, action, static_cast<int>(i), hooks);
     if (!played) return false;
     hires::RolloutFeedback feedback;

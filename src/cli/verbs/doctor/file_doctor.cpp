@@ -164,13 +164,12 @@ Finding PlayDrive(const ImaginationSetup& setup, const reports::MarkedPlace& fro
       setup, imagination::MakeStartState(setup, from.name, {}), kSeed);
   imagination::CheckSetup(rollouts, drive);
   imagination::RolloutHooks hooks;
-  double length = 0.0, time = 0.0;
+  double length = 0.0;
+  hooks.on_begin = [&](const simulation::RobotSimulator&) {
+    way->clear();
+    length = 0.0;
+  };
   hooks.on_sample = [&](const simulation::RobotSimulator& simulator, double) {
-    if (simulator.time() < time) {  // played again, as it touched things that had been left out
-      way->clear();
-      length = 0.0;
-    }
-    time = simulator.time();
     way->push_back(simulator.base().X_MB.position());
     if (way->size() > 1) length += (way->back() - (*way)[way->size() - 2]).norm();
   };
