@@ -2,12 +2,15 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <cmath>
 #include <map>
 #include <memory>
 #include <numeric>
 #include <set>
 #include <tuple>
 #include <utility>
+
+#include "hires/geometry/angles.h"
 
 namespace hires::geometry {
 namespace {
@@ -56,20 +59,6 @@ class PartBuilder {
   TriangleMesh part_;
   std::map<int, int> numbers_;
 };
-
-/// A triangle as a flat prism, so that it has an outline also when it stands upright.
-Shape Thickened(const TriangleMesh& mesh, const std::array<int, 3>& triangle) {
-  const Eigen::Vector3d half = NormalOf(mesh, triangle) * kThickness / 2.0;
-  auto prism = std::make_shared<TriangleMesh>();
-  for (const double side : {-1.0, 1.0}) {
-    for (const int corner : triangle) {
-      prism->vertices.push_back(mesh.vertices[corner] + side * half);
-    }
-  }
-  prism->triangles = {{2, 1, 0}, {3, 4, 5}, {0, 1, 4}, {0, 4, 3},
-                      {1, 2, 5}, {1, 5, 4}, {2, 0, 3}, {2, 3, 5}};
-  return std::shared_ptr<const TriangleMesh>(std::move(prism));
-}
 
 void AppendOutline(const Shape& shape, const Pose3& X_WS, double z_min, double z_max,
                    std::vector<Polygon>* outlines) {
@@ -211,6 +200,32 @@ bool IsConvex(const TriangleMesh& mesh, double slack) {
 
 bool IsSolid(const TriangleMesh& mesh) { return IsClosed(mesh) && IsConvex(mesh); }
 
+Shape ThickTriangle(const TriangleMesh& mesh, const std::array<int, 3>& triangle) {
+  const Eigen::Vector3d half = NormalOf(mesh, triangle) * kThickness / 2.0;
+  auto prism = std::make_shared<TriangleMesh>();
+  for (const double side : {-1.0, 1.0}) {
+    for (const int corner : triangle) {
+      prism->vertices.push_back(mesh.vertices[corner] + side * half);
+    }
+  }
+  prism->triangles = {{2, 1, 0}, {3, 4, 5}, {0, 1, 4}, {0, 4, 3},
+                      {1, 2, 5}, {1, 5, 4}, {2, 0, 3}, {2, 3, 5}};
+  return std::shared_ptr<const TriangleMesh>(std::move(prism));
+}
+
+double WindingNumber(const TriangleMesh& mesh, const Eigen::Vector3d& p_M) {
+  double halves = 0.0;  // [rad] half the solid angle
+  for (const auto& triangle : mesh.triangles) {
+    const Eigen::Vector3d a = mesh.vertices[triangle[0]] - p_M,
+                          b = mesh.vertices[triangle[1]] - p_M,
+                          c = mesh.vertices[triangle[2]] - p_M;
+    const double la = a.norm(), lb = b.norm(), lc = c.norm();
+    halves +=
+        std::atan2(a.dot(b.cross(c)), la * lb * lc + a.dot(b) * lc + b.dot(c) * la + c.dot(a) * lb);
+  }
+  return halves / (2.0 * kPi);
+}
+
 std::vector<Polygon> MeshOutlinesInBand(const TriangleMesh& mesh, const Pose3& X_WS, double z_min,
                                         double z_max) {
   std::vector<Polygon> outlines;
@@ -221,7 +236,7 @@ std::vector<Polygon> MeshOutlinesInBand(const TriangleMesh& mesh, const Pose3& X
       continue;
     }
     for (const auto& triangle : part.triangles) {
-      AppendOutline(Thickened(part, triangle), X_WS, z_min, z_max, &outlines);
+      AppendOutline(ThickTriangle(part, triangle), X_WS, z_min, z_max, &outlines);
     }
   }
   return outlines;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <vector>
 
 #include "hires/geometry/shape.h"
@@ -19,6 +20,15 @@ bool IsConvex(const TriangleMesh& mesh, double slack = 1e-6);
 /// directions) and convex: then what it encloses is matter. Sheets and walls that go round a room
 /// are not.
 bool IsSolid(const TriangleMesh& mesh);
+
+/// A triangle of the mesh as a prism of 1 mm, so that it has an outline also when it stands
+/// upright.
+Shape ThickTriangle(const TriangleMesh& mesh, const std::array<int, 3>& triangle);
+
+/// How often the surface goes round a point, its triangles counter-clockwise from outside: 1 within
+/// a closed one, 0 outside and within its cavities, in between where it has holes (van Oosterom and
+/// Strackee, The solid angle of a plane triangle, IEEE Trans. Biomed. Eng. 30(2), 1983).
+double WindingNumber(const TriangleMesh& mesh, const Eigen::Vector3d& p_M);
 
 /// Outlines of a mesh within z_min..z_max that keep its hollows open: a solid part gives its
 /// outline; of other parts each triangle gives one, thickened to 1 mm.

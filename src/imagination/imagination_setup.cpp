@@ -15,6 +15,7 @@
 #include "hires/perception/recogniser_config.h"
 #include "hires/robot/load_robot.h"
 #include "hires/simulation/pose_error.h"
+#include "hires/simulation/stuck_things.h"
 #include "hires/skills/action_loader.h"
 #include "hires/world/object_catalogue.h"
 #include "hires/world/occupancy_grid.h"
@@ -190,8 +191,9 @@ void RefuseTaken(const world::ObjectModel& model, const std::string& path,
 world::World LoadWorldWithObjects(const SetupConfig& config,
                                   const std::optional<world::OccupancyGrid>& map,
                                   std::map<std::string, std::string>* object_models) {
-  world::World world = map ? world::ExtrudeMap(*map, kWallHeight)
-                           : world::LoadWorldWithAreas(config.world, config.areas);
+  world::World world =
+      map ? world::ExtrudeMap(*map, kWallHeight)
+          : simulation::HoldWhatIsStuck(world::LoadWorldWithAreas(config.world, config.areas));
   if (map) world::AddAreas(config.areas, &world);
   const auto add = [&](const std::string& instance,
                        const std::shared_ptr<const world::ObjectModel>& model) {

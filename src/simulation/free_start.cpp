@@ -9,8 +9,8 @@
 #include "hires/base/error.h"
 #include "hires/geometry/bearing_face.h"
 #include "hires/robot/posture.h"
+#include "simulation/start/overlap.h"
 #include "simulation/start_checks.h"
-#include "world/contact/overlap.h"
 
 namespace hires::simulation {
 namespace {
@@ -131,7 +131,7 @@ void RefuseOffTray(const Scene& scene, const robot::RobotState& start,
   if (tilt > kLevel && beside == 0.0) {
     const bool is_inside = FindInside(model->collisions, X_BO, shapes_B, {}).has_value();
     const double gap = HeightAbove(*plate, {centre.x(), centre.y(), bounds.lower.z()});
-    if (is_inside || gap > world::kStartSlack) FailTilted(robot, *plate, object, tilt);
+    if (is_inside || gap > kStartSlack) FailTilted(robot, *plate, object, tilt);
   }
   if (StandsOn(shapes_B, model->collisions, X_BO)) return;
   const double above = bounds.lower.z() - plate->bounds_B.upper.z();

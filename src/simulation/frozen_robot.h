@@ -25,7 +25,6 @@ class FrozenRobot {
   /// Becomes one body of `physics`, which outlives this, with the shapes of what it holds.
   void AddBody(const geometry::Pose3& X_MB, const std::vector<geometry::Collision>& held_B,
                physics::PhysicsWorld* physics);
-  bool IsBody(physics::BodyId body) const { return physics_ != nullptr && body == body_; }
   /// Before a step of physics. @pre it has a body
   void Move(const geometry::Pose3& X_MB, const geometry::Pose3& X_MBnext);
   /// With a static body. @pre it has a body

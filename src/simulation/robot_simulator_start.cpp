@@ -2,7 +2,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <tuple>
 #include <utility>
 
 #include "hires/base/error.h"
@@ -15,9 +14,9 @@
 #include "simulation/moving_base.h"
 #include "simulation/planar_robot.h"
 #include "simulation/robot_sensors.h"
+#include "simulation/start/overlap.h"
 #include "simulation/start_checks.h"
 #include "simulation/varied.h"
-#include "world/contact/overlap.h"
 
 namespace hires::simulation {
 namespace {
@@ -120,83 +119,55 @@ void RobotSimulator::AddCamera(const base::Rng& rng) {
   }
 }
 
-/// All that is wrong at once. Two things that stand in each other in the world's file are none of
-/// it: LoadWorld has seen to them.
+/// All that is wrong at once. Things that stand in each other in the world's file are none of it:
+/// HoldWhatIsStuck has seen to them.
 void RobotSimulator::RefuseBadStart() {
   std::vector<std::string> problems;
   if (const auto contact = FindContact()) {
     const std::string in_floor =
         world::WhyInFloor(scene_->world, contact->obstacle, base().X_MB.position());
     problems.push_back(fmt::format(
-        "robot starts in collision: its '{}' touches '{}'{}, where it stands at x "
-        "{:.3f} m, y {:.3f} "
-        "m, yaw {:.3f} rad; {}",
+        "robot starts in collision: its '{}' touches '{}'{}, where it stands at x {:.3f} m, y "
+        "{:.3f} m, yaw {:.3f} rad; {}",
         contact->robot_part, contact->obstacle, PlaceText(*contact), base().X_MB.x, base().X_MB.y,
         base().X_MB.yaw, in_floor.empty() ? "move the start" : in_floor));
   }
   const std::vector<world::ObjectState> objects = GetWorldState().objects;
   RefuseSameNames(objects);
-  const std::vector<physics::Touch>& touches = physics_->FindTouches();
+  std::vector<bool> is_of_world;
+  for (const world::ObjectState& object : objects) {
+    is_of_world.push_back(IsOfWorld(object, scene_->world));
+  }
   for (std::size_t i = 0; i < objects.size(); ++i) {
-    const physics::BodyId body = objects_->BodyOf(static_cast<int>(i));
-    if (objects[i].attached_to.empty())
-      problems.push_back(WhyInsideRobot(objects[i], body, touches));
-    for (const physics::Touch& touch : touches) {
-      if (touch.loose == body && touch.depth > world::kStartSlack)
-        problems.push_back(WhyInsideAnother(objects[i], touch, objects));
+    const world::ObjectState& object = objects[i];
+    for (std::size_t j = 0; j < i; ++j) {
+      if (is_of_world[i] && is_of_world[j]) continue;
+      problems.push_back(WhyInOther(object, objects[j], scene_->world));
     }
+    if (!object.attached_to.empty()) continue;
+    problems.push_back(WhyInsideRobot(object, objects_->BodyOf(static_cast<int>(i))));
+    if (!is_of_world[i]) problems.push_back(WhyInStatics(object, scene_->world));
   }
   problems.erase(std::remove(problems.begin(), problems.end(), ""), problems.end());
   if (!problems.empty()) throw base::ConfigError(base::AllThatIsWrong("the start", problems));
 }
 
-std::string RobotSimulator::WhyInsideRobot(const world::ObjectState& object, physics::BodyId body,
-                                           const std::vector<physics::Touch>& touches) const {
+std::string RobotSimulator::WhyInsideRobot(const world::ObjectState& object,
+                                           physics::BodyId body) const {
   std::optional<Inside> inside;
-  for (const physics::Touch& touch : touches) {
-    if (touch.loose != body || touch.depth <= world::kStartSlack) continue;
-    if (planar_) {  // exactly: an arm may reach over an object
+  if (planar_) {  // exactly: an arm may reach over an object
+    for (const physics::Touch& touch : physics_->FindTouches()) {
       const std::string link = planar_->LinkOfBody(touch.other);
-      const double deepest = inside ? inside->depth : world::kStartSlack;
-      if (touch.depth > deepest && !link.empty()) inside = Inside{link, touch.depth, touch.depth};
-    } else if (frozen_->IsBody(touch.other)) {
-      const auto model = scene_->world.RequireModel(object.model);
-      inside = FindInside(model->collisions, object.X_MO, frozen_->shapes_B(), X_MB());
+      const double deepest = inside ? inside->depth : kStartSlack;
+      if (touch.loose == body && touch.depth > deepest && !link.empty()) {
+        inside = Inside{link, touch.depth, touch.depth};
+      }
     }
+  } else {
+    const auto model = scene_->world.RequireModel(object.model);
+    inside = FindInside(model->collisions, object.X_MO, frozen_->shapes_B(), X_MB());
   }
   return inside ? simulation::WhyInsideRobot(object, *scene_, X_MB(), *inside) : "";
-}
-
-/// @param touch  of the object.  @return "" where that is as it should be.
-std::string RobotSimulator::WhyInsideAnother(const world::ObjectState& object,
-                                             const physics::Touch& touch,
-                                             const std::vector<world::ObjectState>& objects) const {
-  const world::World& world = scene_->world;
-  const bool is_of_world = IsOfWorld(object, world);
-  const int fixed = touch.other - 1;  // the floor is the first body, then come the statics
-  if (fixed >= 0 && fixed < static_cast<int>(world.statics.size())) {
-    if (is_of_world || !object.attached_to.empty()) return "";
-    const world::StaticBody& body = world.statics[fixed];
-    return WhyInside(object, body.name, body.collisions, body.X_MB, world);
-  }
-  if (const auto index = objects_->WithBody(touch.other)) {
-    const world::ObjectState& other = objects[*index];
-    const bool is_other_of_world = IsOfWorld(other, world);
-    if (is_of_world && is_other_of_world) return "";
-    // Who was put is to blame; of two the later one.
-    const auto& [put, around] =
-        is_other_of_world ? std::tie(object, other) : std::tie(other, object);
-    return WhyInside(put, around.name, world.RequireModel(around.model)->collisions, around.X_MO,
-                     world);
-  }
-  if (!frozen_->IsBody(touch.other)) return "";
-  for (const world::ObjectState& other : objects) {  // what a frozen robot holds is part of it
-    if (other.attached_to.empty()) continue;
-    const std::string why = WhyInside(
-        object, other.name, world.RequireModel(other.model)->collisions, other.X_MO, world);
-    if (!why.empty()) return why;
-  }
-  return "";
 }
 
 }  // namespace hires::simulation

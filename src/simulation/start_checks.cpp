@@ -6,6 +6,7 @@
 #include <cmath>
 #include <memory>
 #include <set>
+#include <tuple>
 #include <variant>
 
 #include "hires/base/error.h"
@@ -13,7 +14,7 @@
 #include "hires/geometry/bearing_face.h"
 #include "hires/localisation/laser_mount.h"
 #include "hires/robot/tray.h"
-#include "world/contact/overlap.h"
+#include "simulation/start/overlap.h"
 
 namespace hires::simulation {
 namespace {
@@ -103,7 +104,7 @@ std::string TrayRemedy(const Scene& scene, const Pose3& X_MB, const world::Objec
 bool IsOfWorld(const world::ObjectState& object, const world::World& world) {
   const world::ObjectState* known = world.initial.Find(object.name);
   return known != nullptr && known->model == object.model && object.attached_to.empty() &&
-         (known->X_MO.translation - object.X_MO.translation).norm() < world::kStartSlack;
+         (known->X_MO.translation - object.X_MO.translation).norm() < kStartSlack;
 }
 
 std::optional<Inside> FindInside(const std::vector<geometry::Collision>& object, const Pose3& X_MO,
@@ -113,7 +114,7 @@ std::optional<Inside> FindInside(const std::vector<geometry::Collision>& object,
   for (const geometry::Collision& part : robot_B) {
     const geometry::Aabb around = geometry::BoundsOf(part.shape, X_MB * part.X_BS);
     for (const geometry::Collision& shape : object) {
-      if (!world::Overlap({shape}, X_MO, {part}, X_MB)) continue;
+      if (!Overlap({shape}, X_MO, {part}, X_MB)) continue;
       const geometry::Aabb bounds = geometry::BoundsOf(shape.shape, X_MO * shape.X_BS);
       const double depth = std::min(bounds.upper.z(), around.upper.z()) -
                            std::max(bounds.lower.z(), around.lower.z());
@@ -129,8 +130,7 @@ std::string WhyInsideRobot(const world::ObjectState& object, const Scene& scene,
   if (IsOfWorld(object, scene.world))
     return WhyBegunInside(object, scene.world, inside, geometry::Flatten(X_MB));
   const double below = HeightBelowOrigin(*scene.world.RequireModel(object.model));
-  const bool is_origin =
-      below > world::kStartSlack && std::abs(inside.sunk - below) <= world::kStartSlack;
+  const bool is_origin = below > kStartSlack && std::abs(inside.sunk - below) <= kStartSlack;
   const std::string on_tray = TrayRemedy(scene, X_MB, object);
   const std::string cause =
       is_origin ? fmt::format(
@@ -249,13 +249,28 @@ void RefuseSameNames(const std::vector<world::ObjectState>& objects) {
   }
 }
 
-std::string WhyInside(const world::ObjectState& object, const std::string& other,
-                      const std::vector<geometry::Collision>& shapes, const Pose3& X_MS,
-                      const world::World& world) {
+std::string WhyInOther(const world::ObjectState& object, const world::ObjectState& earlier,
+                       const world::World& world) {
+  const bool is_of_world = IsOfWorld(object, world),
+             is_earlier_of_world = IsOfWorld(earlier, world);
+  if (is_of_world && is_earlier_of_world) return "";
+  const auto model = world.RequireModel(object.model), other = world.RequireModel(earlier.model);
+  if (!Overlap(model->collisions, object.X_MO, other->collisions, earlier.X_MO)) return "";
+  const auto& [put, around] =
+      IsOfWorld(object, world) ? std::tie(earlier, object) : std::tie(object, earlier);
+  return fmt::format("{} starts inside '{}'; put it on a free place", Described(put, world),
+                     around.name);
+}
+
+std::string WhyInStatics(const world::ObjectState& object, const world::World& world) {
   const auto model = world.RequireModel(object.model);
-  if (!world::Overlap(model->collisions, object.X_MO, shapes, X_MS)) return "";
-  return fmt::format("{} starts inside '{}'; put it on a free place", Described(object, world),
-                     other);
+  for (const world::StaticBody& body : world.statics) {
+    if (Overlap(model->collisions, object.X_MO, body.collisions, body.X_MB)) {
+      return fmt::format("{} starts inside '{}'; put it on a free place", Described(object, world),
+                         body.name);
+    }
+  }
+  return "";
 }
 
 }  // namespace hires::simulation

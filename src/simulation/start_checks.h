@@ -23,7 +23,7 @@ struct Inside {
   double depth{0.0};  ///< [m] by which both heights overlap
   double sunk{0.0};   ///< [m] from the lowest point of what is inside up to the top of the shape
 };
-/// The one of the robot's shapes that the object reaches into deepest, as world::Overlap judges.
+/// The one of the robot's shapes that the object reaches into deepest, as Overlap judges.
 std::optional<Inside> FindInside(const std::vector<geometry::Collision>& object,
                                  const geometry::Pose3& X_MO,
                                  const std::vector<geometry::Collision>& robot_B,
@@ -51,9 +51,10 @@ void RefuseStiff(const robot::BaseControllerParams& params, double time_step);
 void RefuseTiltedLaser(const robot::Robot& robot);
 /// Two objects of one name.
 void RefuseSameNames(const std::vector<world::ObjectState>& objects);
-/// Which object begins in what is called `other` and has these shapes; "" if it does not.
-std::string WhyInside(const world::ObjectState& object, const std::string& other,
-                      const std::vector<geometry::Collision>& shapes, const geometry::Pose3& X_MS,
-                      const world::World& world);
+/// Who starts inside of whom; "" if none does. Who was put there is to blame, of two the later one.
+std::string WhyInOther(const world::ObjectState& object, const world::ObjectState& earlier,
+                       const world::World& world);
+/// The same of an object in what never moves.
+std::string WhyInStatics(const world::ObjectState& object, const world::World& world);
 
 }  // namespace hires::simulation

@@ -16,7 +16,6 @@
 #include "hires/base/log.h"
 #include "hires/base/text.h"
 #include "hires/world/world.h"
-#include "world/contact/stuck_things.h"
 #include "world/content_hash.h"
 #include "world/floor_level.h"
 #include "world/load_world_in_parts.h"
@@ -122,7 +121,7 @@ class WorldBuilder {
     std::sort(world_.initial.objects.begin(), world_.initial.objects.end(), by_name);
     for (const std::string& doubt : meshes_.Doubts()) world_.notes.push_back(doubt);
     world_.hash = world_.ComputeHash();
-    return HoldWhatIsStuck(OnItsFloor(std::move(world_), floor_, more_areas));
+    return OnItsFloor(std::move(world_), floor_, more_areas);
   }
 
  private:

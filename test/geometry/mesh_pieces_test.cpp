@@ -104,5 +104,18 @@ TEST(MeshPiecesTest, NothingLiesAboveTheMesh) {
   EXPECT_TRUE(ConnectedParts(TriangleMesh{}).empty());
 }
 
+TEST(MeshPiecesTest, ASurfaceGoesOnceRoundWhatItHolds) {
+  TriangleMesh house;  // 4 m wide, its room 3 m
+  hires::test_support::AddBox({-2, -2, 0}, {2, 2, 3}, false, &house);
+  hires::test_support::AddBox({-1.5, -1.5, 0.5}, {1.5, 1.5, 2.5}, true, &house);
+  EXPECT_NEAR(WindingNumber(house, {1.7, 0.3, 1.0}), 1.0, 1e-12) << "in a wall";
+  EXPECT_NEAR(WindingNumber(house, {0.4, -0.2, 1.0}), 0.0, 1e-12) << "in the room";
+  EXPECT_NEAR(WindingNumber(house, {5.0, 1.0, 1.0}), 0.0, 1e-12) << "outside";
+  TriangleMesh plate;  // one side of a cube: a sixth of all directions
+  plate.vertices = {{-1, -1, 1}, {1, -1, 1}, {1, 1, 1}, {-1, 1, 1}};
+  plate.triangles = {{0, 1, 2}, {0, 2, 3}};
+  EXPECT_NEAR(WindingNumber(plate, {0, 0, 0}), 1.0 / 6.0, 1e-12);
+}
+
 }  // namespace
 }  // namespace hires::geometry::mesh_pieces_test

@@ -17,9 +17,9 @@ import xml.etree.ElementTree as ElementTree
 LAYERS = [
     ["base"],
     ["geometry", "temporal", "relay", "actions"],
-    ["robot", "knowledge", "physics"],
+    ["robot", "knowledge"],
     ["world", "planning"],
-    ["navigation", "manipulation", "perception", "execution", "translation",
+    ["physics", "navigation", "manipulation", "perception", "execution", "translation",
      "localisation"],
     ["sensing", "mapping"],
     ["simulation", "skills"],

@@ -82,10 +82,9 @@ TEST_F(ObjectModelTest, MeshesOfEqualObjectsAreShared) {
   folder_.Write("models/thing/cube.obj", kCubeObj);
   folder_.Write("models/thing/model.sdf", WithShape(MeshShape("cube.obj")));
   folder_.Write("models/thing/model.config", ModelConfig("thing"));
-  const World world = LoadWorld(
-      folder_.Write("a.world", WorldText("<include><uri>model://thing</uri><name>a</name></include>"
-                                         "<include><uri>model://thing</uri><name>b</name>"
-                                         "<pose>3 0 0 0 0 0</pose></include>")));
+  const World world = LoadWorld(folder_.Write(
+      "a.world", WorldText("<include><uri>model://thing</uri><name>a</name></include>"
+                           "<include><uri>model://thing</uri><name>b</name></include>")));
   EXPECT_EQ(world.models.size(), 1u);
   EXPECT_EQ(world.initial.objects.size(), 2u);
 }

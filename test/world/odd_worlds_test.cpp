@@ -27,11 +27,8 @@ struct Oddity {
   const char* said;
 };
 
-/// On the floor, each at a place of its own.
 std::string Loose(const std::string& name, const std::string& content) {
-  const int number = name.back() >= '0' && name.back() <= '9' ? name.back() - '0' : 0;
-  return fmt::format("<model name='{}'><pose>3 {} 0.5 0 0 0</pose>{}</model>\n", name,
-                     3 + 3 * number, content);
+  return fmt::format("<model name='{}'><pose>3 3 0 0 0 0</pose>{}</model>\n", name, content);
 }
 
 std::string Body(const std::string& name, const std::string& inertial, const std::string& shape) {

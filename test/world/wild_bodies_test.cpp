@@ -118,7 +118,7 @@ TEST_F(WildBodiesTest, AWrapperRoundALooseModelIsALooseThingOfItsName) {
 
 TEST_F(WildBodiesTest, LinksThatFixedJointsHoldTogetherAreOneThing) {
   const World world =
-      Load(Model("desk", "<pose>0 0 0.5 0 0 0</pose>" + Link("top", "0 0 1 0 0 0", Inertial(3, 1)) +
+      Load(Model("desk", Link("top", "0 0 1 0 0 0", Inertial(3, 1)) +
                              Model("cabinet", "<pose>0 2 0 0 0 0</pose>" +
                                                   Link("box", "0 0 0 0 0 0", Inertial(1, 0.5))) +
                              "<link name='mark'/>" + Joint("fixed", "top", "cabinet::box")));

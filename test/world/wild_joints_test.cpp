@@ -78,7 +78,7 @@ TEST_F(WildJointsTest, EndsOfJointsMayBeOtherThanLinks) {
   const std::string hand = Model("hand", "<link name='palm'/>");
   WriteModel("finger", Model("finger", "<link name='tip'/>"));
   WriteModel("wrist", Model("wrist", "<include><uri>model://finger</uri></include>"));
-  const std::string base = Link("base", "0 0 0.5 0 0 0", Inertial(1, 0.2));
+  const std::string base = Link("base", "0 0 0 0 0 0", Inertial(1, 0.2));
   for (const std::string& joints :
        {hand + Joint("fixed", "base", "hand::palm"),
         "<include><uri>model://finger</uri></include>" + Joint("fixed", "base", "finger::tip"),

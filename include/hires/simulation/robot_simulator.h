@@ -137,10 +137,7 @@ class RobotSimulator {
   void AddPlanarRobot();
   void AddCamera(const base::Rng& rng);
   void RefuseBadStart();
-  std::string WhyInsideRobot(const world::ObjectState& object, physics::BodyId body,
-                             const std::vector<physics::Touch>& touches) const;
-  std::string WhyInsideAnother(const world::ObjectState& object, const physics::Touch& touch,
-                               const std::vector<world::ObjectState>& objects) const;
+  std::string WhyInsideRobot(const world::ObjectState& object, physics::BodyId body) const;
   std::optional<RobotContact> FindContact() const;
   geometry::Pose2 Believed() const;  // base in the map, without the noise of what is drawn
   void Sense();

@@ -1,4 +1,4 @@
-#include "world/contact/stuck_things.h"
+#include "hires/simulation/stuck_things.h"
 
 #include <fmt/format.h>
 
@@ -11,9 +11,9 @@
 #include "hires/base/log.h"
 #include "hires/base/text.h"
 #include "hires/physics/physics_world.h"
-#include "world/contact/overlap.h"
+#include "simulation/start/overlap.h"
 
-namespace hires::world {
+namespace hires::simulation {
 namespace {
 
 constexpr double kMostMovedOut = 0.02;  // [m] as much as hand-made worlds are inexact
@@ -29,10 +29,12 @@ struct Stuck {
 /// of meshes in meshes are at times too large.
 class StuckFinder {
  public:
-  explicit StuckFinder(const World& world) : world_(world), physics_(physics::PhysicsParams()) {
+  explicit StuckFinder(const world::World& world)
+      : world_(world), physics_(physics::PhysicsParams()) {
     physics_.AddFloor(world.floor_friction);
-    for (const StaticBody& body : world.statics) physics_.AddStatic(body.collisions, body.X_MB);
-    for (const ObjectState& object : world.initial.objects) {
+    for (const world::StaticBody& body : world.statics)
+      physics_.AddStatic(body.collisions, body.X_MB);
+    for (const world::ObjectState& object : world.initial.objects) {
       const auto model = world.ModelOf(object);
       const auto body = physics_.AddLoose(model->mass_properties, model->collisions,
                                           {object.X_MO, geometry::Twist3()});
@@ -44,7 +46,7 @@ class StuckFinder {
   std::map<std::string, Stuck> Find() {
     for (const physics::Touch& touch : physics_.FindTouches()) {
       if (touch.depth <= kStartSlack) continue;
-      const ObjectState& object = *objects_.at(touch.loose);
+      const world::ObjectState& object = *objects_.at(touch.loose);
       const auto other = objects_.find(touch.other);
       if (other != objects_.end()) {
         const auto model = world_.ModelOf(*other->second);
@@ -54,7 +56,7 @@ class StuckFinder {
       } else if (touch.other == 0) {
         stuck_[object.name].below_floor = touch.depth;
       } else {
-        const StaticBody& body = world_.statics.at(touch.other - 1);
+        const world::StaticBody& body = world_.statics.at(touch.other - 1);
         if (Reaches(object, body.collisions, body.X_MB)) Note(object.name, body.name, touch.depth);
       }
     }
@@ -62,7 +64,7 @@ class StuckFinder {
   }
 
  private:
-  bool Reaches(const ObjectState& object, const std::vector<geometry::Collision>& shapes,
+  bool Reaches(const world::ObjectState& object, const std::vector<geometry::Collision>& shapes,
                const geometry::Pose3& X_MS) const {
     return Overlap(world_.ModelOf(object)->collisions, object.X_MO, shapes, X_MS);
   }
@@ -74,18 +76,18 @@ class StuckFinder {
     stuck.depth = depth;
   }
 
-  const World& world_;
+  const world::World& world_;
   physics::PhysicsWorld physics_;
-  std::map<physics::BodyId, const ObjectState*> objects_;
+  std::map<physics::BodyId, const world::ObjectState*> objects_;
   std::map<std::string, Stuck> stuck_;
 };
 
 /// What so many things have in common.
-void Say(const std::vector<const ObjectState*>& things, const std::map<std::string, Stuck>& stuck,
-         const std::string& what, World* world) {
+void Say(const std::vector<const world::ObjectState*>& things,
+         const std::map<std::string, Stuck>& stuck, const std::string& what, world::World* world) {
   if (things.empty()) return;
   const std::string& first = things.front()->name;
-  const std::string source = SourceOf(first, *world);
+  const std::string source = world::SourceOf(first, *world);
   const Stuck& how = stuck.at(first);
   const bool is_one = things.size() == 1;
   world->notes.push_back(fmt::format("{} loose thing{} {}; {}{}{}'{}', {:.3f} m deep in {}",
@@ -97,20 +99,20 @@ void Say(const std::vector<const ObjectState*>& things, const std::map<std::stri
             fmt::format("world={} note=\"{}\"", world->name, world->notes.back()));
 }
 
-bool ComesBeforeByName(const StaticBody& a, const StaticBody& b) {
+bool ComesBeforeByName(const world::StaticBody& a, const world::StaticBody& b) {
   return base::ToLower(a.name) < base::ToLower(b.name);
 }
 
 }  // namespace
 
-World HoldWhatIsStuck(World world) {
+world::World HoldWhatIsStuck(world::World world) {
   if (world.initial.objects.empty()) return world;
   const std::map<std::string, Stuck> stuck = StuckFinder(world).Find();
   if (stuck.empty()) return world;
-  std::vector<ObjectState> loose;
-  std::vector<const ObjectState*> held, lifted, moved;
-  const std::vector<ObjectState> all = std::move(world.initial.objects);
-  for (const ObjectState& object : all) {
+  std::vector<world::ObjectState> loose;
+  std::vector<const world::ObjectState*> held, lifted, moved;
+  const std::vector<world::ObjectState> all = std::move(world.initial.objects);
+  for (const world::ObjectState& object : all) {
     const auto found = stuck.find(object.name);
     if (found != stuck.end() && found->second.depth > kMostMovedOut) {
       held.push_back(&object);
@@ -135,4 +137,4 @@ World HoldWhatIsStuck(World world) {
   return world;
 }
 
-}  // namespace hires::world
+}  // namespace hires::simulation

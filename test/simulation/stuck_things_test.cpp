@@ -1,13 +1,13 @@
 // Loose things of a world's file that stand in one another.
+#include "hires/simulation/stuck_things.h"
+
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "hires/world/world.h"
-#include "world/sdf_texts.h"
-#include "world/temp_folder.h"
+#include "support/temporary_folder.h"
 
-namespace hires::world::stuck_things_test {
+namespace hires::simulation::stuck_things_test {
 namespace {
 
 using testing::AllOf;
@@ -54,20 +54,22 @@ std::string RoomMesh() {
 
 class StuckThingsTest : public testing::Test {
  protected:
-  World Load(const std::string& content) const {
-    return LoadWorld(folder_.Write("test.world", WorldText(content)));
+  world::World Load(const std::string& content) const {
+    return HoldWhatIsStuck(
+        world::LoadWorld(folder_.Write("test.world", "<sdf version='1.7'>\n<world name='test'>\n" +
+                                                         content + "\n</world>\n</sdf>\n")));
   }
-  static std::vector<std::string> NamesOf(const World& world) {
+  static std::vector<std::string> NamesOf(const world::World& world) {
     std::vector<std::string> names;
-    for (const ObjectState& object : world.initial.objects) names.push_back(object.name);
+    for (const world::ObjectState& object : world.initial.objects) names.push_back(object.name);
     return names;
   }
 
-  TempFolder folder_;
+  hires::test_support::TemporaryFolder folder_;
 };
 
 TEST_F(StuckThingsTest, WhatPhysicsWouldThrowApartStandsStillAndIsSaidOnce) {
-  const World world =
+  const world::World world =
       Load(Loose("a1", 10, 10, 0.2) + Loose("a2", 10.2, 10, 0.2) + Loose("free", 0, 0, 0.2) +
            Static("wall", 5, 0, 0.5, "<box><size>0.2 4 1</size></box>") + Loose("b", 5, 0, 0.2));
   EXPECT_THAT(NamesOf(world), ElementsAre("free"));
@@ -80,7 +82,7 @@ TEST_F(StuckThingsTest, WhatPhysicsWouldThrowApartStandsStillAndIsSaidOnce) {
 }
 
 TEST_F(StuckThingsTest, WhatReachesLittleIntoAnotherStaysLooseAndItIsSaid) {
-  const World world =
+  const world::World world =
       Load(Loose("lower", 0, 0, 0.2) + Loose("upper", 0, 0, 0.59) + Loose("beside", 0.402, 0, 0.2));
   EXPECT_THAT(NamesOf(world), ElementsAre("beside", "lower", "upper"));
   EXPECT_THAT(world.notes, ElementsAre(AllOf(HasSubstr("2 loose things at most 0.02 m deep"),
@@ -88,7 +90,7 @@ TEST_F(StuckThingsTest, WhatReachesLittleIntoAnotherStaysLooseAndItIsSaid) {
 }
 
 TEST_F(StuckThingsTest, WhatReachesIntoTheFloorBeginsOnItAndItIsSaid) {
-  const World world = Load(Loose("pot", 1, 1, 0.1) + Loose("box", 3, 1, 0.0));
+  const world::World world = Load(Loose("pot", 1, 1, 0.1) + Loose("box", 3, 1, 0.0));
   EXPECT_THAT(NamesOf(world), ElementsAre("box", "pot"));
   EXPECT_THAT(world.notes, ElementsAre(AllOf(HasSubstr("2 loose things in the floor"),
                                              HasSubstr("'box', 0.200 m deep in the floor"))));
@@ -97,11 +99,11 @@ TEST_F(StuckThingsTest, WhatReachesIntoTheFloorBeginsOnItAndItIsSaid) {
 TEST_F(StuckThingsTest, WithinWhatAMeshGoesRoundIsFree) {
   folder_.Write("room.stl", RoomMesh());
   const std::string mesh = "<mesh><uri>room.stl</uri></mesh>";
-  const World world = Load(Static("room", 0, 0, 0, mesh) + Loose("crate", 2, 2, 0.2) +
-                           Loose("at_wall", 3.9, 0, 0.2));
+  const world::World world = Load(Static("room", 0, 0, 0, mesh) + Loose("crate", 2, 2, 0.2) +
+                                  Loose("at_wall", 3.9, 0, 0.2));
   EXPECT_THAT(NamesOf(world), ElementsAre("crate"));
   EXPECT_THAT(world.notes, ElementsAre(HasSubstr("'at_wall', 0.")));
 }
 
 }  // namespace
-}  // namespace hires::world::stuck_things_test
+}  // namespace hires::simulation::stuck_things_test

@@ -1,0 +1,85 @@
+#include "simulation/start/overlap.h"
+
+#include <algorithm>
+#include <array>
+#include <memory>
+#include <variant>
+
+#include "geometry/mesh_pieces.h"
+
+namespace hires::simulation {
+namespace {
+
+using geometry::Pose3;
+using MeshOfShape = std::shared_ptr<const geometry::TriangleMesh>;
+
+constexpr double kMatter = 0.99;  // of a winding number: within a closed surface
+
+/// Bounds in the mesh's own frame.
+geometry::Aabb BoundsInMesh(const geometry::Aabb& bounds, const Pose3& X_MS) {
+  geometry::Aabb in_mesh;
+  for (int i = 0; i < 8; ++i) {
+    in_mesh.Include(X_MS.Inverse() *
+                    Eigen::Vector3d((i & 1) != 0 ? bounds.upper.x() : bounds.lower.x(),
+                                    (i & 2) != 0 ? bounds.upper.y() : bounds.lower.y(),
+                                    (i & 4) != 0 ? bounds.upper.z() : bounds.lower.z()));
+  }
+  return in_mesh;
+}
+
+/// Whether a triangle of the mesh crosses the prism, or the prism's middle lies in what a closed
+/// surface of it holds; what a mesh merely goes round is free.
+bool MeshMeets(const geometry::TriangleMesh& mesh, const Pose3& X_MS,
+               const geometry::Polygon& outline, const geometry::Aabb& bounds) {
+  const geometry::Aabb near = BoundsInMesh(bounds, X_MS);
+  const auto crosses = [&](const std::array<int, 3>& triangle) {
+    geometry::Aabb of_triangle;
+    for (const int corner : triangle) of_triangle.Include(mesh.vertices[corner]);
+    if (!of_triangle.Overlaps(near)) return false;
+    const auto other = geometry::OutlineInBand(geometry::ThickTriangle(mesh, triangle), X_MS,
+                                               bounds.lower.z(), bounds.upper.z());
+    return other && geometry::Distance(outline, *other) == 0.0;
+  };
+  if (std::any_of(mesh.triangles.begin(), mesh.triangles.end(), crosses)) return true;
+  const Eigen::Vector3d middle = 0.5 * (bounds.lower + bounds.upper);
+  return geometry::WindingNumber(mesh, X_MS.Inverse() * middle) > kMatter;
+}
+
+/// Whether a thing as its hull reaches more than the slack into a shape.
+bool ReachesInto(const geometry::Shape& thing, const Pose3& X_MT, const geometry::Shape& shape,
+                 const Pose3& X_MS) {
+  geometry::Aabb bounds = geometry::BoundsOf(thing, X_MT);
+  if (!bounds.Overlaps(geometry::BoundsOf(shape, X_MS))) return false;
+  bounds.lower.z() += kStartSlack;
+  bounds.upper.z() -= kStartSlack;
+  if (bounds.lower.z() > bounds.upper.z()) return false;
+  const auto outline = geometry::OutlineInBand(thing, X_MT, bounds.lower.z(), bounds.upper.z());
+  if (!outline) return false;
+  if (const auto* mesh = std::get_if<MeshOfShape>(&shape))
+    return MeshMeets(**mesh, X_MS, *outline, bounds);
+  const auto other = geometry::OutlineInBand(shape, X_MS, bounds.lower.z(), bounds.upper.z());
+  return other && geometry::Distance(*outline, *other) == 0.0;
+}
+
+}  // namespace
+
+bool Overlap(const std::vector<geometry::Collision>& a, const Pose3& X_MA,
+             const std::vector<geometry::Collision>& b, const Pose3& X_MB) {
+  const auto is_mesh = [](const geometry::Collision& shape) {
+    return std::holds_alternative<MeshOfShape>(shape.shape);
+  };
+  for (const geometry::Collision& first : a) {
+    const Pose3 X_MF = X_MA * first.X_BS;
+    for (const geometry::Collision& second : b) {
+      const Pose3 X_MS = X_MB * second.X_BS;
+      const bool is_round_second = is_mesh(first) && !is_mesh(second);
+      if (is_round_second ? ReachesInto(second.shape, X_MS, first.shape, X_MF)
+                          : ReachesInto(first.shape, X_MF, second.shape, X_MS)) {
+        return true;
+      }
+    }
+  }
+  return false;
+}
+
+}  // namespace hires::simulation
