@@ -8,7 +8,9 @@
 #include <assimp/IOSystem.hpp>
 #include <assimp/Importer.hpp>
 #include <filesystem>
+#include <set>
 
+#include "geometry/plain_gltf.h"
 #include "hires/base/error.h"
 #include "hires/base/text.h"
 
@@ -32,12 +34,14 @@ class NoFiles : public Assimp::IOSystem {
   throw base::ConfigError(fmt::format("{}: {}", path, what));
 }
 
-/// "stl", "dae" or "obj".
+/// "stl", "dae", "obj", "glb" or "gltf".
 std::string FormatOf(const std::string& path) {
+  static const std::set<std::string> read{".stl", ".dae", ".obj", ".glb", ".gltf"};
   std::string ending = base::ToLower(std::filesystem::path(path).extension().string());
-  if (ending != ".stl" && ending != ".dae" && ending != ".obj") {
+  if (read.count(ending) == 0) {
     Fail(path,
-         fmt::format("a mesh of type '{}' is not read; convert it to .stl, .dae or .obj", ending));
+         fmt::format("a mesh of type '{}' is not read; convert it to .stl, .dae, .obj or .glb",
+                     ending));
   }
   return ending.substr(1);
 }
@@ -72,14 +76,17 @@ std::string Said(const Assimp::Importer& importer, const std::string& path,
   return said;
 }
 
-/// Polygons count as what they are cut into.
-std::size_t NumTrianglesIn(const aiScene& scene) {
+/// Of a node and those below it. Polygons count as what they are cut into, and meshes as often as
+/// they are placed.
+std::size_t NumTrianglesIn(const aiScene& scene, const aiNode& node) {
   std::size_t count = 0;
-  for (unsigned i = 0; i < scene.mNumMeshes; ++i) {
-    const aiMesh& part = *scene.mMeshes[i];
+  for (unsigned i = 0; i < node.mNumMeshes; ++i) {
+    const aiMesh& part = *scene.mMeshes[node.mMeshes[i]];
     for (unsigned k = 0; k < part.mNumFaces; ++k)
       count += std::max(part.mFaces[k].mNumIndices, 2u) - 2u;
   }
+  for (unsigned i = 0; i < node.mNumChildren; ++i)
+    count += NumTrianglesIn(scene, *node.mChildren[i]);
   return count;
 }
 
@@ -100,7 +107,9 @@ const aiScene& Import(Assimp::Importer* importer, const std::string& path,
   const aiScene* scene =
       importer->ReadFileFromMemory(bytes.data(), bytes.size(), 0u, format.c_str());
   // What follows takes ten times as long as reading.
-  const std::size_t num_triangles = scene == nullptr ? 0 : NumTrianglesIn(*scene);
+  const std::size_t num_triangles = scene == nullptr || scene->mRootNode == nullptr
+                                        ? 0
+                                        : NumTrianglesIn(*scene, *scene->mRootNode);
   if (num_triangles > kMaxTriangles) {
     Fail(path, fmt::format("has {} triangles, at most {} are read; decimate it", num_triangles,
                            kMaxTriangles));
@@ -200,8 +209,9 @@ TriangleMesh ReadMesh(const std::string& path, const Eigen::Vector3d& scale,
                       const Submesh& submesh) {
   const std::string format = FormatOf(path);
   CheckScale(path, scale);
-  const std::string bytes = base::ReadTextFile(path, kMaxBytes);
+  std::string bytes = base::ReadTextFile(path, kMaxBytes);
   RefuseOtherFiles(path, bytes);
+  if (format == "glb" || format == "gltf") bytes = PlainGltf(bytes, format == "glb", path);
   Assimp::Importer importer;
   const bool is_whole = submesh.name.empty();
   const aiScene& scene = Import(&importer, path, format, bytes, is_whole);

@@ -187,8 +187,8 @@ TEST_F(MeshReader, RefusesMissingFile) {
 
 TEST_F(MeshReader, RefusesOtherFormats) {
   EXPECT_THAT([&] { ReadMesh(Write("a.blend", "x")); },
-              ThrowsMessage<base::ConfigError>(
-                  AllOf(HasSubstr("'.blend'"), HasSubstr("convert it to .stl, .dae or .obj"))));
+              ThrowsMessage<base::ConfigError>(AllOf(
+                  HasSubstr("'.blend'"), HasSubstr("convert it to .stl, .dae, .obj or .glb"))));
 }
 
 TEST_F(MeshReader, RefusesMalformedFiles) {

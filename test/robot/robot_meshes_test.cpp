@@ -10,6 +10,7 @@
 #include "hires/base/text.h"
 #include "hires/robot/robot_model.h"
 #include "hires/robot/robot_profile.h"
+#include "support/glb.h"
 #include "support/log_catcher.h"
 #include "support/messages.h"
 #include "support/rounds.h"
@@ -56,6 +57,15 @@ TEST_F(RobotMeshes, RelativeToTheUrdf) {
   geometry::Aabb box;
   for (const Eigen::Vector3d& p : mesh->vertices) box.Include(p);
   EXPECT_EQ(box.upper, Eigen::Vector3d(2.0, 6.0, 0.0));
+}
+
+TEST_F(RobotMeshes, GltfAsOneFile) {
+  folder_.Write("hand.glb", test_support::GlbOf(test_support::TetrahedronGltf()));
+  const MeshPtr mesh = MeshOf(LoadRobotModel(folder_.Write("r.urdf", UrdfWith("hand.glb"))));
+  EXPECT_EQ(mesh->triangles.size(), 4u);
+  geometry::Aabb box;
+  for (const Eigen::Vector3d& p : mesh->vertices) box.Include(p);
+  EXPECT_EQ(box.upper, Eigen::Vector3d(1.0, 2.0, 13.0));
 }
 
 TEST_F(RobotMeshes, FileUri) {

@@ -99,7 +99,7 @@ TEST_F(ObjectModelTest, RefusesMeshesItCannotRead) {
   EXPECT_THAT(error_of(MeshShape("none.obj")),
               AllOf(HasSubstr("thing.sdf:2: collision 'c'"), HasSubstr("none.obj")));
   EXPECT_THAT(error_of(MeshShape("bad.stl")), HasSubstr("bad.stl"));
-  EXPECT_THAT(error_of(MeshShape("cube.blend")), HasSubstr(".stl, .dae or .obj"));
+  EXPECT_THAT(error_of(MeshShape("cube.blend")), HasSubstr(".stl, .dae, .obj or .glb"));
   EXPECT_THAT(error_of(MeshShape("cube.obj", "0 1 1")), HasSubstr("scale"));
   EXPECT_THAT(error_of(MeshShape("../../outside.obj")), HasSubstr("outside the folder"));
   EXPECT_THAT(error_of(MeshShape("model://none/cube.obj")), HasSubstr("not there"));

@@ -12,6 +12,7 @@
 #include "hires/base/rng.h"
 #include "hires/world/occupancy_grid.h"
 #include "hires/world/world.h"
+#include "support/glb.h"
 #include "world/sdf_texts.h"
 #include "world/wild_world.h"
 
@@ -151,6 +152,18 @@ TEST_F(WildShapesTest, ASubmeshOfColladaIsNamedByItsNodeAndPlacedByIt) {
     const geometry::Aabb box = geometry::BoundsOf(part.shape, part.X_BS);
     EXPECT_TRUE(box.lower.isApprox(Eigen::Vector3d(3, 2, 0), 1e-5)) << box.lower.transpose();
     EXPECT_TRUE(box.upper.isApprox(Eigen::Vector3d(4, 3, 0), 1e-5)) << box.upper.transpose();
+  }
+}
+
+TEST_F(WildShapesTest, ASubmeshOfGltfIsNamedByItsNodeAndPlacedByIt) {
+  folder_.Write("part.glb", test_support::GlbOf(test_support::TetrahedronGltf()));
+  for (const std::string submesh : {"", "<submesh><name>part</name></submesh>"}) {
+    const World world =
+        Load(StaticModel("a", LinkWithShape("<mesh><uri>part.glb</uri>" + submesh + "</mesh>")));
+    const auto& part = world.statics.at(0).collisions.at(0);
+    const geometry::Aabb box = geometry::BoundsOf(part.shape, part.X_BS);
+    EXPECT_TRUE(box.lower.isApprox(Eigen::Vector3d(0, 0, 10), 1e-6)) << box.lower.transpose();
+    EXPECT_TRUE(box.upper.isApprox(Eigen::Vector3d(1, 2, 13), 1e-6)) << box.upper.transpose();
   }
 }
 

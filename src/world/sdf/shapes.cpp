@@ -189,7 +189,7 @@ std::vector<ShapePart> ShapePartsOf(const sdf::Collision& collision, const std::
   if (kind == "heightmap" || kind == "image") {
     throw base::ConfigError(fmt::format(
         "{}: its shape is a <{}>, and drives are imagined on one level: where it is flat use a "
-        "plane or a box, else export it as a mesh (.stl, .dae, .obj); or take it out",
+        "plane or a box, else export it as a mesh (.stl, .dae, .obj, .glb); or take it out",
         where, kind));
   }
   throw base::ConfigError(fmt::format(
