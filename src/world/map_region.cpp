@@ -9,7 +9,7 @@ namespace hires::world {
 namespace {
 
 constexpr double kWholeArea = 1e4;  // [m^2] 4 million cells of 0.05 m: maps of seconds
-constexpr double kBorder = 2.0;     // [m] beyond the outermost body that maps have at most
+constexpr double kBorder = 2.0;     // [m] beyond the outermost body that maps of most robots have
 constexpr double kOverhead = 5.0;   // [m] above the floor; few robots are as high
 
 Eigen::AlignedBox2d Flat(const geometry::Aabb& bounds) {

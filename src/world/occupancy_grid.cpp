@@ -98,12 +98,10 @@ std::string LargestText(const World& world) {
 /// A free grid around x, y of the world's bodies, or of what MapRegion says, its cell edges on
 /// whole multiples of the resolution.
 OccupancyGrid GridAround(const World& world, double resolution, double margin) {
-  constexpr double kRegionMargin = 2.0;  // [m] at most: areas lie in a region already
   geometry::Aabb bounds = BoundsOf(world);
   if (const auto region = MapRegion(world)) {
     bounds.lower.head<2>() = region->min();
     bounds.upper.head<2>() = region->max();
-    margin = std::min(margin, kRegionMargin);
   }
   const Eigen::Array2d lower =
       ((bounds.lower.head<2>().array() - margin) / resolution + kTouch).floor();

@@ -179,6 +179,33 @@ robot::Robot CarWithBed(double length, double yaw) {
   return robot;
 }
 
+/// Of a base as long as a bus.
+robot::Robot LongRobot(double length, double width) {
+  robot::Robot robot = WithRootAskew(length, width, 0.0);
+  robot.profile.base_controller.drive = robot::Drive::kDifferential;
+  return robot;
+}
+
+TEST(WayBlockedTest, AMapOfAWorldHasRoomForTheLongestBaseAtItsAreas) {
+  base::Rng rng(31);
+  for (int i = 0; i < Rounds(24); ++i) {
+    const double length = rng.Uniform(0.5, 12.0), yaw = rng.Uniform(-3.0, 3.0);
+    world::World world;
+    if (i % 2 == 0) world.statics.push_back(Block("post", {0.2, 0.2, 2.0}, {0.0, 9.0, 1.0}));
+    if (i % 4 == 0)  // so wide that its map covers what lies round the areas
+      world.statics.push_back(Block("far", {0.2, 0.2, 2.0}, {400.0, 9.0, 1.0}));
+    const Pose2 from{rng.Uniform(-3.0, 3.0), 0.0, yaw}, to = from * Pose2{2.0, 0.0, 0.0};
+    hires::test_support::AddArea(&world, "from", geometry::Lift(from));
+    hires::test_support::AddArea(&world, "to", geometry::Lift(to));
+    const auto context = std::make_shared<const DrivingContext>(
+        MakeDrivingContext(world, LongRobot(length, 0.6), MoveBaseParams{}));
+    MoveBase skill(context, to, kSlow);
+    const test_support::SkillRun run = test_support::RunSkill(&skill, {from, {}});
+    EXPECT_EQ(run.status.progress, Progress::kSucceeded)
+        << "length " << length << " m: " << ToString(run.status.failure);
+  }
+}
+
 TEST(WayBlockedTest, AGoalAtWhichOnlyTheHeadingIsWrongSaysWhatReachesIntoWhat) {
   base::Rng rng(14);
   const std::vector<std::string> sides{"front", "left", "back", "right"};

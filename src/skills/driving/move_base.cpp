@@ -12,16 +12,22 @@
 #include "skills/driving/way_blocked.h"
 #include "skills/posture_skills.h"
 #include "world/floor_level.h"
+#include "world/map_region.h"
 
 namespace hires::skills {
 namespace {
 
 using geometry::Pose2;
 
-constexpr double kMapMargin = 2.0;  // [m] free floor around the outermost body or area
+constexpr double kMapMargin = 2.0;    // [m] free floor around the outermost body or area, at least
+constexpr double kBeyondReach = 1.0;  // [m] of it that a base leaves which turns at an area
 
-/// [m] The map covers all bodies and this much more: far enough that all areas lie well inside.
-double MapMargin(const world::World& world) {
+/// [m] The map covers all bodies and this much more: far enough that all areas lie well inside, and
+/// the base with them, for what lies outside of the map is an obstacle.
+/// @param reach  [m] of the base from its origin
+double MapMargin(const world::World& world, double reach) {
+  const double margin = std::max(kMapMargin, reach + kBeyondReach);
+  if (world::MapRegion(world)) return margin;  // areas lie in it
   geometry::Aabb bodies;
   for (const world::StaticBody& body : world.statics) {
     for (const geometry::Collision& shape : body.collisions) {
@@ -35,7 +41,7 @@ double MapMargin(const world::World& world) {
     const Eigen::Vector3d beyond = (bodies.lower - p).cwiseMax(p - bodies.upper);
     outside = std::max({outside, beyond.x(), beyond.y()});
   }
-  return outside + kMapMargin;
+  return outside + margin;
 }
 
 /// Follows what a car's planner found, as the local planner of other robots is set up.
@@ -179,7 +185,9 @@ DrivingContext MakeDrivingContext(const world::OccupancyGrid& map, const robot::
 
 DrivingContext MakeDrivingContext(const world::World& world, const robot::Robot& robot,
                                   const MoveBaseParams& params) {
-  const double margin = MapMargin(world);
+  const geometry::Polygon footprint =
+      geometry::Padded(robot.profile.footprint, robot.profile.footprint_padding);
+  const double margin = MapMargin(world, geometry::CircumscribedRadius(footprint));
   const Band heights = ObstacleHeights(robot, params);
   SlicedByHeight map = SliceByHeight(world, robot, heights, params.map_resolution, margin);
   const double step = params.min_obstacle_height;  // what is no deeper is driven over as well
