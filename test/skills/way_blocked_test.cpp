@@ -206,6 +206,50 @@ TEST(WayBlockedTest, AMapOfAWorldHasRoomForTheLongestBaseAtItsAreas) {
   }
 }
 
+TEST(WayBlockedTest, ABaseThatReachesBeyondTheMapIsToldAtOnce) {
+  world::OccupancyGrid map;
+  map.resolution = kCell;
+  map.width = map.height = 300;
+  map.cells.assign(300 * 300, world::Cell::kFree);
+  const auto context = std::make_shared<const DrivingContext>(
+      MakeDrivingContext(map, LongRobot(8.0, 0.6), MoveBaseParams{}));
+  const auto said = [&](const Pose2& from, const Pose2& to, FailureCode code) {
+    const Status status = FirstWord(context, from, to);
+    EXPECT_EQ(status.failure.code, code) << status.failure.detail;
+    return status.failure.detail;
+  };
+  EXPECT_THAT(said({3.007, 7.0, 0.0}, {7.0, 7.0, 0.0}, FailureCode::kStartBlocked),
+              AllOf(HasSubstr("the start at x 3.01 m, y 7.00 m lies at the map's end"),
+                    HasSubstr("the base, 8.03 m long and 0.63 m wide with its padding, reaches "
+                              "1.01 m beyond it")));
+  EXPECT_THAT(said({6.0, 7.0, 0.0}, {13.007, 7.0, 0.0}, FailureCode::kGoalBlocked),
+              AllOf(HasSubstr("the goal at x 13.01 m"), HasSubstr("2.02 m beyond it")));
+  EXPECT_EQ(said({5.0, 7.0, 0.0}, {11.1, 7.0, 0.0}, {}), "") << "within the goal's tolerance";
+  EXPECT_EQ(said({5.0, 1.0, 0.0}, {9.0, 1.0, 0.0}, {}), "") << "beside the map's end";
+}
+
+TEST(WayBlockedTest, ABaseThatCannotTurnSaysWhatItTouches) {
+  world::World hall;
+  hall.statics = {Block("north", {60.0, 0.2, 2.0}, {0.0, 3.0, 1.0}),
+                  Block("south", {60.0, 0.2, 2.0}, {0.0, -3.0, 1.0})};
+  hall.sources["north"] = "hall.world:2";
+  const auto end_of = [&](double length, const Pose2& to) {
+    const auto context = std::make_shared<const DrivingContext>(
+        MakeDrivingContext(hall, LongRobot(length, 0.6), MoveBaseParams{}));
+    MoveBase skill(context, to, kSlow);
+    return test_support::RunSkill(&skill, {{-8.0, 0.5, 0.0}, {}}, {}, 400.0).status;
+  };
+  const Status turned = end_of(8.0, {8.0, 0.5, geometry::kPi});
+  EXPECT_EQ(turned.failure.code, FailureCode::kNoValidTrajectory);
+  EXPECT_THAT(turned.failure.detail,
+              AllOf(HasSubstr("the base, 8.03 m long and 0.63 m wide with its padding, cannot "
+                              "turn at x "),
+                    HasSubstr("degrees to the left it touches 'north' (hall.world:2), "),
+                    HasSubstr("degrees to the right it touches 'north' (hall.world:2)")));
+  EXPECT_EQ(end_of(8.0, {8.0, 0.5, 0.0}).progress, Progress::kSucceeded);
+  EXPECT_EQ(end_of(3.0, {8.0, 0.5, geometry::kPi}).progress, Progress::kSucceeded);
+}
+
 TEST(WayBlockedTest, AGoalAtWhichOnlyTheHeadingIsWrongSaysWhatReachesIntoWhat) {
   base::Rng rng(14);
   const std::vector<std::string> sides{"front", "left", "back", "right"};

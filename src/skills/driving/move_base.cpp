@@ -365,6 +365,11 @@ bool MoveBase::PlanWithMargin(const robot::Observation& observation) {
 /// Round what the laser sees, if that leaves a way: where map and marks lie beside each other, for
 /// a localisation errs, narrow places are closed that are not.
 std::optional<Status> MoveBase::Plan(const robot::Observation& observation) {
+  if (const auto why = WhyOffMap(*costmap_, footprint_, "start", observation.X_MB, 0.0))
+    return Failed({base::FailureCode::kStartBlocked, {}, *why});
+  const double slack = context_->params.local.xy_goal_tolerance;
+  if (const auto why = WhyOffMap(*costmap_, footprint_, "goal", X_MGoal_, slack))
+    return Failed({base::FailureCode::kGoalBlocked, {}, *why});
   if (sensed_ &&
       FindPath(MapWithMarks(observation), observation.X_MB) == navigation::PathStatus::kFound) {
     return std::nullopt;
@@ -436,7 +441,10 @@ bool MoveBase::NoteMotion(const robot::Observation& observation) {
 }
 
 Status MoveBase::Stuck(base::FailureCode code, const robot::Observation& observation) const {
-  return Failed({code, {}, WhyStuck(*now_, footprint_, observation.X_MB)});
+  std::string why = WhyStuck(*now_, footprint_, observation.X_MB);
+  if (why.empty() && code == base::FailureCode::kNoValidTrajectory)
+    why = WhyNoTurn(*context_, *now_, footprint_, observation.X_MB);
+  return Failed({code, {}, why});
 }
 
 Status MoveBase::Recover(const robot::Observation& observation) {

@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "hires/base/text.h"
 #include "hires/geometry/angles.h"
 #include "hires/robot/link_bounds.h"
 #include "skills/driving/by_height.h"
@@ -59,6 +60,35 @@ bool IsSolid(const Costmap& costmap, int column, int row) {
 }
 bool IsTaken(const Costmap& costmap, int column, int row) {
   return IsSolid(costmap, column, row) || costmap.HasObstacle(column, row);
+}
+
+/// The middle of a cell below an outline that is no room for something of a base; none: there is no
+/// such cell on the map.
+std::optional<Eigen::Vector2d> TakenBelow(const Costmap& costmap,
+                                          const geometry::Polygon& outline_M) {
+  // Of some cells a part lies below it, and not the middle.
+  const geometry::Polygon padded_M = geometry::Padded(outline_M, costmap.resolution());
+  Eigen::AlignedBox2d box;
+  for (const Eigen::Vector2d& p_M : outline_M) box.extend(p_M);
+  int left = 0, lower = 0, right = 0, upper = 0;
+  costmap.CellOf(box.min(), &left, &lower);
+  costmap.CellOf(box.max(), &right, &upper);
+  for (int row = lower; row <= upper; ++row) {
+    for (int column = left; column <= right; ++column) {
+      if (!costmap.Inside(column, row) || !IsTaken(costmap, column, row)) continue;
+      const Eigen::Vector2d p_M = costmap.CentreOf(column, row);
+      if (geometry::Contains(padded_M, p_M)) return p_M;
+    }
+  }
+  return std::nullopt;
+}
+
+/// "the base, 8.23 m long and 0.63 m wide with its padding,"
+std::string SizeText(const geometry::Polygon& footprint) {
+  Eigen::AlignedBox2d box;
+  for (const Eigen::Vector2d& p_B : footprint) box.extend(p_B);
+  return fmt::format("the base, {:.2f} m long and {:.2f} m wide with its padding,", box.sizes().x(),
+                     box.sizes().y());
 }
 
 bool IsObstacle(const Costmap& costmap, const Eigen::Vector2d& p_M) {
@@ -670,6 +700,48 @@ std::string WhyStuck(const Costmap& costmap, const geometry::Polygon& footprint,
       "count as free (driving.costmap.unknown_is_lethal: false)",
       num_unknown, num_unknown == 1 ? "" : "s", reach, X_MB.x, X_MB.y, nearest.x(), nearest.y(),
       num_unknown == 1 ? "s" : "");
+}
+
+std::optional<std::string> WhyOffMap(const Costmap& costmap, const geometry::Polygon& footprint,
+                                     const std::string& place, const Pose2& X_MB, double slack) {
+  const Eigen::Vector2d lower = costmap.origin();
+  const Eigen::Vector2d upper =
+      lower + costmap.resolution() * Eigen::Vector2d(costmap.width(), costmap.height());
+  double beyond = 0.0;
+  for (const Eigen::Vector2d& p_M : geometry::Transformed(X_MB, footprint))
+    beyond = std::max({beyond, (lower - p_M).maxCoeff(), (p_M - upper).maxCoeff()});
+  if (beyond <= slack) return std::nullopt;
+  return fmt::format(
+      "the {} at x {:.2f} m, y {:.2f} m lies at the map's end, x {:.2f} .. {:.2f} m, y {:.2f} .. "
+      "{:.2f} m: {} reaches {:.2f} m beyond it, where all counts as an obstacle; choose another "
+      "place, or map more",
+      place, X_MB.x, X_MB.y, lower.x(), upper.x(), lower.y(), upper.y(), SizeText(footprint),
+      beyond);
+}
+
+std::string WhyNoTurn(const DrivingContext& context, const Costmap& costmap,
+                      const geometry::Polygon& footprint, const Pose2& X_MB) {
+  constexpr int kEnough = 90, kWhole = 180;  // [deg]
+  const Explainer explainer(context, costmap);
+  int widest = 0;
+  std::vector<std::string> sides;
+  for (const int sign : {1, -1}) {
+    int angle = 1;
+    geometry::Polygon outline_M;
+    for (; angle < kWhole; ++angle) {
+      outline_M = geometry::Transformed({X_MB.x, X_MB.y, X_MB.yaw + sign * angle * M_PI / kWhole},
+                                        footprint);
+      if (costmap.CostBelow(navigation::Footprint(outline_M)) >= navigation::kLethalCost) break;
+    }
+    widest = std::max(widest, angle - 1);
+    const auto touched = TakenBelow(costmap, outline_M);
+    sides.push_back(fmt::format("{} degrees to the {} it touches {}", angle,
+                                sign > 0 ? "left" : "right",
+                                touched ? explainer.WhatIsAt(*touched) : "the map's end"));
+  }
+  if (widest >= kEnough) return "";
+  return fmt::format("{} cannot turn at x {:.2f} m, y {:.2f} m: {}", SizeText(footprint), X_MB.x,
+                     X_MB.y, base::Join(sides, ", "));
 }
 
 std::string WhyNoPath(const DrivingContext& context, const Costmap& costmap, const Pose2& X_MStart,

@@ -38,10 +38,22 @@ navigation::Costmap WithClosed(const navigation::Costmap& costmap, const NarrowP
 std::string WhyBlocked(const DrivingContext& context, const navigation::Costmap& costmap,
                        const std::string& place, const geometry::Pose2& X_MB);
 
+/// "the start at ... lies at the map's end: ...": of a base that reaches more than `slack` [m]
+/// beyond the map, where all counts as an obstacle; none: it does not.
+/// @param footprint  in the base frame
+std::optional<std::string> WhyOffMap(const navigation::Costmap& costmap,
+                                     const geometry::Polygon& footprint, const std::string& place,
+                                     const geometry::Pose2& X_MB, double slack);
+
 /// Why a base may have got stuck where it is, as far as the map tells: what is nearest to it are
 /// cells that nobody has mapped (how many, where). Else empty.
 std::string WhyStuck(const navigation::Costmap& costmap, const geometry::Polygon& footprint,
                      const geometry::Pose2& X_MB);
+
+/// Of a base that can turn to neither side by 90 degrees where it stands: how large it is, by how
+/// much it can, and what it touches then. Else empty.
+std::string WhyNoTurn(const DrivingContext& context, const navigation::Costmap& costmap,
+                      const geometry::Polygon& footprint, const geometry::Pose2& X_MB);
 
 /// Where the way from start to goal ends, and by what; heights as above.
 /// @param narrow  where the footprint is too wide, if that is why; else null.
