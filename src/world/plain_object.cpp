@@ -22,6 +22,11 @@ void RefuseOtherSizes(const base::ParamReader& in, bool is_round) {
     in.Fail("length", is_round ? "wanted 'height', how long it is along its axis"
                                : "wanted 'depth', how long it is along x");
   }
+  for (const char* all : {"size", "dimensions"}) {
+    if (!in.Has(all)) continue;
+    in.Fail(all, is_round ? "wanted 'radius' and 'height', a number each"
+                          : "wanted 'depth', 'width' and 'height', a number each");
+  }
 }
 
 }  // namespace

@@ -162,6 +162,8 @@ TEST_F(ObjectModelTest, SizesAsOthersCallThemAreToldByTheirNamesHere) {
       {"cylinder, radius: 0.04", "length", "'height'"},
       {"cylinder, radius: 0.04, height: 0.2", "length", "'height'"},
       {"box, width: 0.1, height: 0.2", "length", "'depth'"},
+      {"box", "size", "'depth', 'width' and 'height'"},
+      {"cylinder", "dimensions", "'radius' and 'height'"},
       {"box, height: 0.2", "diameter", "'depth' and 'width'"}};
   for (const auto& [shape, key, wanted] : cases) {
     EXPECT_THAT(
