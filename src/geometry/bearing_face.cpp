@@ -33,15 +33,27 @@ struct LevelFace {
   Aabb bounds;
 };
 
-/// Triangles of one height together, from below. Whichever way they face: sheets are wound either
-/// way.
-std::vector<LevelFace> LevelFacesOf(const TriangleMesh& mesh, const Pose3& X_WM) {
+/// 1 where triangles are counter-clockwise from outside, -1 where from inside: by the sign of the
+/// volume round the middle.
+double WindingOf(const TriangleMesh& mesh, const Pose3& X_WM, const Vector3d& p_WMiddle) {
+  double sum = 0.0;
+  for (const auto& triangle : mesh.triangles) {
+    const auto [a, b, c] = CornersOf(mesh, triangle, X_WM);
+    sum += (a - p_WMiddle).dot((b - p_WMiddle).cross(c - p_WMiddle));
+  }
+  return sum < 0.0 ? -1.0 : 1.0;
+}
+
+/// Triangles of one height together, from below.
+/// @param winding  as WindingOf: only those that look up; 0: those that look down, too
+std::vector<LevelFace> LevelFacesOf(const TriangleMesh& mesh, const Pose3& X_WM, double winding) {
   std::vector<LevelFace> triangles;
   for (const auto& triangle : mesh.triangles) {
     const auto [a, b, c] = CornersOf(mesh, triangle, X_WM);
     const Vector3d normal = 0.5 * (b - a).cross(c - a);
     if (normal.norm() <= 0.0 || std::abs(normal.z()) < std::cos(kLevelFace) * normal.norm())
       continue;
+    if (winding * normal.z() < 0.0) continue;
     LevelFace face{(a.z() + b.z() + c.z()) / 3.0, normal.norm(), {}};
     for (const Vector3d& corner : {a, b, c}) face.bounds.Include(corner);
     triangles.push_back(face);
@@ -61,17 +73,26 @@ std::vector<LevelFace> LevelFacesOf(const TriangleMesh& mesh, const Pose3& X_WM)
   return faces;
 }
 
+double LargestOf(const std::vector<LevelFace>& faces) {
+  double largest = 0.0;
+  for (const LevelFace& face : faces) largest = std::max(largest, face.area);
+  return largest;
+}
+
 }  // namespace
 
 Aabb BearingBounds(const Shape& shape, const Pose3& X_WS) {
   const Aabb whole = BoundsOf(shape, X_WS);
   const auto* mesh = std::get_if<std::shared_ptr<const TriangleMesh>>(&shape);
   if (mesh == nullptr) return whole;
-  const std::vector<LevelFace> faces = LevelFacesOf(**mesh, X_WS);
-  double largest = 0.0;
-  for (const LevelFace& face : faces) largest = std::max(largest, face.area);
   const Vector3d size = whole.upper - whole.lower;
-  if (largest <= 0.0 || largest < kLeastOfOutline * size.x() * size.y()) return whole;
+  const double least = kLeastOfOutline * size.x() * size.y();
+  const double winding = WindingOf(**mesh, X_WS, 0.5 * (whole.lower + whole.upper));
+  std::vector<LevelFace> faces = LevelFacesOf(**mesh, X_WS, winding);
+  // Sheets are wound either way.
+  if (LargestOf(faces) < least) faces = LevelFacesOf(**mesh, X_WS, 0.0);
+  const double largest = LargestOf(faces);
+  if (largest <= 0.0 || largest < least) return whole;
   const auto top = std::find_if(faces.rbegin(), faces.rend(), [&](const LevelFace& face) {
     return face.area >= kNearlyAsLarge * largest;
   });

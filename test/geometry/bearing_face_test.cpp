@@ -2,7 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <memory>
+#include <utility>
 
 #include "support/box_mesh.h"
 
@@ -20,6 +22,38 @@ TEST(BearingFaceTest, OfABasketTheFloorBears) {
     const Aabb bounds = BearingBounds(Basket(turned), X_WS);
     EXPECT_TRUE(bounds.lower.isApprox(Vector3d(0.8, 1.85, 0.5))) << bounds.lower.transpose();
     EXPECT_TRUE(bounds.upper.isApprox(Vector3d(1.2, 2.15, 0.51))) << bounds.upper.transpose();
+  }
+}
+
+TEST(BearingFaceTest, AnUndersideBearsNothingHoweverMuchLargerItIs) {
+  for (const bool turned : {false, true}) {
+    auto tub = std::make_shared<TriangleMesh>();  // walls of 0.1 m
+    AddBox({-0.3, -0.25, 0.0}, {0.3, 0.25, 0.04}, turned, tub.get());
+    AddBox({-0.3, -0.25, 0.0}, {-0.2, 0.25, 0.2}, turned, tub.get());
+    AddBox({0.2, -0.25, 0.0}, {0.3, 0.25, 0.2}, turned, tub.get());
+    tub->triangles.erase(tub->triangles.begin() + 2, tub->triangles.begin() + 4);
+    // The floor's upper side lies between the walls alone.
+    const int first = static_cast<int>(tub->vertices.size());
+    tub->vertices.insert(
+        tub->vertices.end(),
+        {{-0.2, -0.25, 0.04}, {0.2, -0.25, 0.04}, {0.2, 0.25, 0.04}, {-0.2, 0.25, 0.04}});
+    for (const auto& [b, c] : {std::pair<int, int>{1, 2}, {2, 3}}) {
+      tub->triangles.push_back(turned ? std::array<int, 3>{first, first + c, first + b}
+                                      : std::array<int, 3>{first, first + b, first + c});
+    }
+    const Aabb bounds = BearingBounds(std::shared_ptr<const TriangleMesh>(tub), {});
+    EXPECT_TRUE(bounds.upper.isApprox(Vector3d(0.2, 0.25, 0.04))) << bounds.upper.transpose();
+  }
+}
+
+TEST(BearingFaceTest, ASheetBearsWhicheverWayItIsWound) {
+  for (const bool turned : {false, true}) {
+    auto sheet = std::make_shared<TriangleMesh>();  // a floor and one wall
+    sheet->vertices = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}, {0, 0, 0.5}, {1, 0, 0.5}};
+    sheet->triangles = {{0, 1, 2}, {0, 2, 3}, {0, 5, 1}, {0, 4, 5}};
+    for (auto& [a, b, c] : sheet->triangles)
+      if (turned) std::swap(b, c);
+    EXPECT_EQ(BearingBounds(std::shared_ptr<const TriangleMesh>(sheet), {}).upper.z(), 0.0);
   }
 }
 
