@@ -9,6 +9,7 @@
 
 #include "hires/base/check.h"
 #include "hires/base/error.h"
+#include "physics/collision_pieces.h"
 #include "physics/ode_session.h"
 #include "physics/physics_world_impl.h"
 
@@ -93,11 +94,13 @@ void PhysicsWorld::Impl::ForgetNear() {
 
 void PhysicsWorld::Impl::AddFixtures(const std::vector<geometry::Collision>& collisions,
                                      const geometry::Pose3& X_GB, BodyId body, Group* group) {
-  for (const geometry::Collision& collision : collisions) {
-    PlacedShape shape(collision);
-    const geometry::Pose3 X_GS = X_GB * collision.X_BS;
-    group->fixtures.push_back({std::move(shape), X_GS.translation, X_GS.rotation.toRotationMatrix(),
-                               geometry::BoundsOf(collision.shape, X_GS), body});
+  for (std::size_t i = 0; i < collisions.size(); ++i) {
+    const geometry::Pose3 X_GS = X_GB * collisions[i].X_BS;
+    for (const geometry::Collision& piece : PiecesOf(collisions[i])) {
+      group->fixtures.push_back({PlacedShape(piece), X_GS.translation,
+                                 X_GS.rotation.toRotationMatrix(),
+                                 geometry::BoundsOf(piece.shape, X_GS), body, static_cast<int>(i)});
+    }
   }
   geometry::Aabb all;
   for (const Fixture& fixture : group->fixtures) all.Include(fixture.bounds_G);
@@ -110,12 +113,19 @@ LooseBody PhysicsWorld::Impl::MakeLoose(const geometry::MassProperties& properti
   LooseBody body;
   body.p_BC = properties.p_BBcm;
   for (const geometry::Collision& collision : collisions) {
-    PlacedShape shape(collision);
     const Vector3d p_CS = collision.X_BS.translation - body.p_BC;
-    body.reach = std::max(body.reach, p_CS.norm() + shape.reach());
-    body.inside = std::max(body.inside, shape.inside());
-    body.shapes.push_back(
-        {std::move(shape), p_CS, collision.X_BS.rotation.normalized().toRotationMatrix()});
+    const Matrix3d R_BS = collision.X_BS.rotation.normalized().toRotationMatrix();
+    const std::vector<geometry::Collision> pieces = PiecesOf(collision);
+    if (pieces.size() > 1) {  // as of a mesh that is whole
+      const geometry::Aabb bounds = geometry::BoundsOf(collision.shape, {});
+      body.inside = std::max(body.inside, (bounds.upper - bounds.lower).minCoeff() / 4);
+    }
+    for (const geometry::Collision& piece : pieces) {
+      PlacedShape shape(piece);
+      body.reach = std::max(body.reach, p_CS.norm() + shape.reach());
+      body.inside = std::max(body.inside, shape.inside());
+      body.shapes.push_back({std::move(shape), p_CS, R_BS});
+    }
   }
   return body;
 }

@@ -54,7 +54,7 @@ std::optional<FixedTouch> PhysicsWorld::Impl::LookForFixedTouch(BodyId except, G
       FindContacts(moved.shape, fixed.shape, Vector3d::Zero(), &found);
       for (const ContactPoint& point : found) {
         if (deepest && point.depth <= deepest->depth) continue;
-        deepest = FixedTouch{static_cast<int>(i), fixed.body, point.depth};
+        deepest = FixedTouch{moved.collision, fixed.body, point.depth};
       }
     }
   }

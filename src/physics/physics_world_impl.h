@@ -25,6 +25,7 @@ struct Fixture {
   Matrix3d R_GS;
   geometry::Aabb bounds_G;
   BodyId body{-1};             // whose shape it is; a driven group has one body
+  int collision{0};            // of the body's, whose piece it is
   std::uint64_t placed_at{0};  // the group's num_moves for which shape stands in the world
 };
 

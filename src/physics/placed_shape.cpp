@@ -57,24 +57,6 @@ void RequireMesh(const std::string& name, const geometry::TriangleMesh* mesh) {
   }
 }
 
-void RequireShape(const geometry::Collision& collision) {
-  const std::string& name = collision.name;
-  RequireSurface(collision);
-  if (const auto* box = std::get_if<geometry::Box>(&collision.shape)) {
-    RequireSize(name, "box size x", box->size.x());
-    RequireSize(name, "box size y", box->size.y());
-    RequireSize(name, "box size z", box->size.z());
-  } else if (const auto* cylinder = std::get_if<geometry::Cylinder>(&collision.shape)) {
-    RequireSize(name, "cylinder radius", cylinder->radius);
-    RequireSize(name, "cylinder length", cylinder->length);
-  } else if (const auto* sphere = std::get_if<geometry::Sphere>(&collision.shape)) {
-    RequireSize(name, "sphere radius", sphere->radius);
-  } else {
-    RequireMesh(name,
-                std::get<std::shared_ptr<const geometry::TriangleMesh>>(collision.shape).get());
-  }
-}
-
 void SetGeomPose(dGeomID geom, const Vector3d& p, const Eigen::Matrix3d& R) {
   dMatrix3 rotation;
   for (int row = 0; row < 3; ++row) {
@@ -176,6 +158,24 @@ PlacedShape PlacedShape::Floor(double friction) {
   floor.friction_ = friction;
   floor.geom_.reset(dCreatePlane(nullptr, 0.0, 0.0, 1.0, 0.0));
   return floor;
+}
+
+void RequireShape(const geometry::Collision& collision) {
+  const std::string& name = collision.name;
+  RequireSurface(collision);
+  if (const auto* box = std::get_if<geometry::Box>(&collision.shape)) {
+    RequireSize(name, "box size x", box->size.x());
+    RequireSize(name, "box size y", box->size.y());
+    RequireSize(name, "box size z", box->size.z());
+  } else if (const auto* cylinder = std::get_if<geometry::Cylinder>(&collision.shape)) {
+    RequireSize(name, "cylinder radius", cylinder->radius);
+    RequireSize(name, "cylinder length", cylinder->length);
+  } else if (const auto* sphere = std::get_if<geometry::Sphere>(&collision.shape)) {
+    RequireSize(name, "sphere radius", sphere->radius);
+  } else {
+    RequireMesh(name,
+                std::get<std::shared_ptr<const geometry::TriangleMesh>>(collision.shape).get());
+  }
 }
 
 PlacedShape::PlacedShape(const geometry::Collision& collision)

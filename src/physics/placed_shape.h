@@ -12,14 +12,17 @@ struct dxTriMeshData;
 
 namespace hires::physics {
 
+/// @throws base::ConfigError naming the collision if a size is not positive and finite, a mesh is
+/// empty or names vertices it does not have, friction or restitution is out of range.
+void RequireShape(const geometry::Collision& collision);
+
 /// A collision shape that can be put anywhere and asked where it touches another one.
 class PlacedShape {
  public:
   enum class Kind { kFloor, kBox, kCylinder, kSphere, kMesh };
 
   static PlacedShape Floor(double friction);
-  /// @throws base::ConfigError naming the collision if a size is not positive and finite, a mesh is
-  /// empty or names vertices it does not have, friction or restitution is out of range.
+  /// @throws base::ConfigError as RequireShape.
   explicit PlacedShape(const geometry::Collision& collision);
 
   void Place(const Eigen::Vector3d& p_WS, const Eigen::Matrix3d& R_WS);

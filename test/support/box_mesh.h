@@ -46,4 +46,30 @@ inline std::shared_ptr<const geometry::TriangleMesh> Basket(bool turned = false)
   return mesh;
 }
 
+/// As Basket without its overlaps: one closed surface, its floor at 0.01 m.
+inline std::shared_ptr<const geometry::TriangleMesh> Tub() {
+  auto mesh = std::make_shared<geometry::TriangleMesh>();
+  const auto ring = [&](double x, double y, double z) {
+    for (const auto& [sx, sy] : {std::pair{-1, -1}, {1, -1}, {1, 1}, {-1, 1}})
+      mesh->vertices.emplace_back(sx * x, sy * y, z);
+  };
+  ring(0.2, 0.15, 0.0);    // 0: underside
+  ring(0.2, 0.15, 0.15);   // 4: rim, outside
+  ring(0.18, 0.13, 0.15);  // 8: rim, inside
+  ring(0.18, 0.13, 0.01);  // 12: floor
+  const auto quad = [&](int a, int b, int c, int d) {
+    mesh->triangles.push_back({a, b, c});
+    mesh->triangles.push_back({a, c, d});
+  };
+  quad(3, 2, 1, 0);
+  quad(12, 13, 14, 15);
+  for (int i = 0; i < 4; ++i) {
+    const int k = (i + 1) % 4;
+    quad(i, k, 4 + k, 4 + i);
+    quad(4 + i, 4 + k, 8 + k, 8 + i);
+    quad(8 + i, 8 + k, 12 + k, 12 + i);
+  }
+  return mesh;
+}
+
 }  // namespace hires::test_support
