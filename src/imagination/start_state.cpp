@@ -19,8 +19,25 @@ geometry::Pose3 AreaPose(const ImaginationSetup& setup, const std::string& area)
   throw base::ConfigError(base::UnknownName("area", area, setup.scene->world.FrameNames()));
 }
 
+}  // namespace
+
+void RefuseFixed(const ImaginationSetup& setup, const std::string& object) {
+  const world::World& world = setup.scene->world;
+  for (const world::StaticBody& body : world.statics) {
+    if (base::ToLower(body.name) != base::ToLower(object)) continue;
+    const std::string source = world::SourceOf(body.name, world);
+    throw base::ConfigError(fmt::format(
+        "object '{}' stands still where the world{} has it, and cannot be put elsewhere: it is no "
+        "loose thing, or it reaches into another one there; move it in the world's file",
+        object, source.empty() ? "" : " (" + source + ")"));
+  }
+}
+
+namespace {
+
 world::ObjectState MakeObject(const ImaginationSetup& setup, const std::string& name,
                               const geometry::Pose3& X_MO) {
+  RefuseFixed(setup, name);
   world::ObjectState object;
   object.name = base::ToLower(name);
   // Two cartons of a world are of one model, which has the name of the first.

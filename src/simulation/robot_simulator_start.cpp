@@ -138,6 +138,8 @@ void RobotSimulator::RefuseBadStart() {
   for (const world::ObjectState& object : objects) {
     is_of_world.push_back(IsOfWorld(object, scene_->world));
   }
+  const std::vector<physics::Touch> touches =
+      planar_ ? physics_->FindTouches() : std::vector<physics::Touch>();
   for (std::size_t i = 0; i < objects.size(); ++i) {
     const world::ObjectState& object = objects[i];
     for (std::size_t j = 0; j < i; ++j) {
@@ -145,18 +147,18 @@ void RobotSimulator::RefuseBadStart() {
       problems.push_back(WhyInOther(object, objects[j], scene_->world));
     }
     if (!object.attached_to.empty()) continue;
-    problems.push_back(WhyInsideRobot(object, objects_->BodyOf(static_cast<int>(i))));
+    problems.push_back(WhyInsideRobot(object, objects_->BodyOf(static_cast<int>(i)), touches));
     if (!is_of_world[i]) problems.push_back(WhyInStatics(object, scene_->world));
   }
   problems.erase(std::remove(problems.begin(), problems.end(), ""), problems.end());
   if (!problems.empty()) throw base::ConfigError(base::AllThatIsWrong("the start", problems));
 }
 
-std::string RobotSimulator::WhyInsideRobot(const world::ObjectState& object,
-                                           physics::BodyId body) const {
+std::string RobotSimulator::WhyInsideRobot(const world::ObjectState& object, physics::BodyId body,
+                                           const std::vector<physics::Touch>& touches) const {
   std::optional<Inside> inside;
   if (planar_) {  // exactly: an arm may reach over an object
-    for (const physics::Touch& touch : physics_->FindTouches()) {
+    for (const physics::Touch& touch : touches) {
       const std::string link = planar_->LinkOfBody(touch.other);
       const double deepest = inside ? inside->depth : kStartSlack;
       if (touch.loose == body && touch.depth > deepest && !link.empty()) {

@@ -526,6 +526,25 @@ TEST(StartStateTest, RefusesWhatItCannotPlace) {
               AllOf(HasSubstr("4 objects"), HasSubstr("at most 3")));
 }
 
+/// It would be there twice: as an obstacle, too.
+TEST(StartStateTest, RefusesToPutWhatStandsStillElsewhere) {
+  SceneFile file;
+  std::string hall = HallSdf();
+  for (const std::string name : {"mill7", "mill8"}) {
+    hall.insert(hall.find("<frame"), "<include><uri>model://mill</uri><name>" + name +
+                                         "</name><pose>1 1 0 0 0 0</pose></include>");
+  }
+  file.root["world"] = file.folder.Write("hall.world", hall);
+  const ImaginationSetup setup = file.Load();
+  EXPECT_EQ(setup.scene->world.initial.Find("mill7"), nullptr) << "stands in another one";
+  const auto told = AllOf(HasSubstr("object 'Mill7' stands still where the world"),
+                          HasSubstr("hall.world:"), HasSubstr("move it in the world's file"));
+  EXPECT_THAT(ConfigErrorOf([&] { MakeStartState(setup, "door", {"Mill7"}); }), told);
+  PutObject put;
+  put.object = "Mill7";
+  EXPECT_THAT(ConfigErrorOf([&] { MakeStartState(setup, {{"RobotAt", {"door"}}}, {put}); }), told);
+}
+
 TEST(StartStateTest, RefusesALoadWithoutATray) {
   YAML::Node robot = YAML::LoadFile(Root() + "/config/robots/cart.yaml");
   robot["urdf"] = Root() + "/urdf/cart.urdf";

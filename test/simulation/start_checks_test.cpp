@@ -4,6 +4,8 @@
 #include <gtest/gtest.h>
 
 #include "hires/base/error.h"
+#include "simulation/start/overlap.h"
+#include "support/box_mesh.h"
 #include "support/scenes.h"
 
 namespace hires::simulation::start_checks_test {
@@ -55,6 +57,19 @@ TEST(StartChecksTest, TheModelsOriginIsBlamedWhereJustThatLiftsItOut) {
   EXPECT_THAT(Why(object, room, {"plate", 0.02, 0.1}),
               HasSubstr("reaches 0.100 m below its origin"));
   EXPECT_THAT(Why(object, room, {"plate", 0.02, 0.15}), HasSubstr("put it on a free place there"));
+}
+
+TEST(StartChecksTest, OfTwoMeshesNeitherIsInTheOtherWhereOneGoesRoundIt) {
+  using hires::test_support::Shape;
+  const std::vector<geometry::Collision> basket{Shape("basket", hires::test_support::Basket(), {})};
+  const std::vector<geometry::Collision> apple{
+      Shape("apple", hires::test_support::BoxMesh({0.08, 0.08, 0.08}), {0.0, 0.0, 0.04})};
+  const geometry::Pose3 X_inside{{0.05, 0.02, 0.011}, Eigen::Quaterniond::Identity()};
+  EXPECT_FALSE(Overlap(basket, {}, apple, X_inside));
+  EXPECT_FALSE(Overlap(apple, X_inside, basket, {}));
+  const geometry::Pose3 X_wall{{0.19, 0.0, 0.011}, Eigen::Quaterniond::Identity()};
+  EXPECT_TRUE(Overlap(basket, {}, apple, X_wall));
+  EXPECT_TRUE(Overlap(apple, X_wall, basket, {}));
 }
 
 }  // namespace

@@ -26,6 +26,11 @@ struct PutObject {
   geometry::Pose3 X_AO;  ///< of the object
 };
 
+/// What never moves in the world, also because it reaches into another thing of its file
+/// (simulation::HoldWhatIsStuck), is put nowhere else: it would be there twice.
+/// @throws base::ConfigError naming it and its line.
+void RefuseFixed(const ImaginationSetup& setup, const std::string& object);
+
 /// The robot with objects on its tray, and nothing else: the first in the middle, the next ones to
 /// its right and left, 0.13 m apart (the slots of the tray pick and place action).
 /// @throws base::ConfigError for an unknown object, more than three objects, a robot without a

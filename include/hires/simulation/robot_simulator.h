@@ -137,7 +137,8 @@ class RobotSimulator {
   void AddPlanarRobot();
   void AddCamera(const base::Rng& rng);
   void RefuseBadStart();
-  std::string WhyInsideRobot(const world::ObjectState& object, physics::BodyId body) const;
+  std::string WhyInsideRobot(const world::ObjectState& object, physics::BodyId body,
+                             const std::vector<physics::Touch>& touches) const;
   std::optional<RobotContact> FindContact() const;
   geometry::Pose2 Believed() const;  // base in the map, without the noise of what is drawn
   void Sense();

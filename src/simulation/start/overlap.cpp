@@ -72,11 +72,12 @@ bool Overlap(const std::vector<geometry::Collision>& a, const Pose3& X_MA,
     const Pose3 X_MF = X_MA * first.X_BS;
     for (const geometry::Collision& second : b) {
       const Pose3 X_MS = X_MB * second.X_BS;
-      const bool is_round_second = is_mesh(first) && !is_mesh(second);
-      if (is_round_second ? ReachesInto(second.shape, X_MS, first.shape, X_MF)
-                          : ReachesInto(first.shape, X_MF, second.shape, X_MS)) {
+      // A mesh is judged by its triangles: of two each is the hull once, as one may go round the
+      // other.
+      const bool is_in_second = (is_mesh(first) && !is_mesh(second)) ||
+                                ReachesInto(first.shape, X_MF, second.shape, X_MS);
+      if (is_in_second && (!is_mesh(first) || ReachesInto(second.shape, X_MS, first.shape, X_MF)))
         return true;
-      }
     }
   }
   return false;

@@ -41,7 +41,11 @@ void RequireNames(const ImagineQuery& query, QueryScene* scene) {
   check([&] { imagination::MakeStartState(setup, query.start.from, {}); });
   check([&] { RequirePostures(query.start, setup.scene->robot); });
   for (const std::string& object : query.start.Objects()) {
-    if (setup.scene->world.initial.Find(object) == nullptr) check([&] { setup.ModelOf(object); });
+    if (setup.scene->world.initial.Find(object) != nullptr) continue;
+    check([&] {
+      imagination::RefuseFixed(setup, object);
+      setup.ModelOf(object);
+    });
   }
   for (const base::ActionCall& action : base::Combinations(query.action))
     check([&] { skills::MakeSkill(*setup.skills, action); });
