@@ -35,14 +35,14 @@ const Keys kOfNoMatter{"pose",  "header", "stamp",       "seq",     "covariance"
 /// A key that ends with one of these holds no place; nor does one that begins so and ends with an
 /// axis or a unit.
 const std::set<std::string> kNoGoals{
-    "tolerance", "tolerances",  "size",           "sizes",     "color",       "colour",
-    "colors",    "colours",     "limit",          "limits",    "scale",       "covariance",
-    "rgb",       "rgba",        "speed",          "speeds",    "velocity",    "polygon",
-    "polygons",  "vertices",    "verts",          "footprint", "dimension",   "dimensions",
-    "extent",    "extents",     "bounds",         "range",     "resolution",  "gain",
-    "gains",     "weights",     "threshold",      "inflation", "transform",   "transforms",
-    "offset",    "offsets",     "corner",         "corners",   "velocities",  "vel",
-    "vels",      "translation", "transformation", "acc",       "acceleration"};
+    "tolerance",   "tolerances",     "size",      "sizes",       "color",      "colour",
+    "colors",      "colours",        "limit",     "limits",      "scale",      "covariance",
+    "rgb",         "rgba",           "speed",     "speeds",      "velocity",   "polygon",
+    "polygons",    "vertices",       "verts",     "footprint",   "dimension",  "dimensions",
+    "extent",      "extents",        "bounds",    "range",       "resolution", "gain",
+    "gains",       "weights",        "threshold", "inflation",   "transform",  "transforms",
+    "offset",      "offsets",        "corners",   "velocities",  "vel",        "vels",
+    "translation", "transformation", "acc",       "acceleration"};
 const std::set<std::string> kUnits{"x", "y", "z", "xy", "xyz", "yaw", "rgb", "rgba", "m", "rad"};
 
 constexpr std::size_t kLongestNumbers = 500;  // letters of a goal that is written as text

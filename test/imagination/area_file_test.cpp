@@ -379,6 +379,15 @@ TEST_F(AreaFileTest, WhatAGoalIsWrappedInIsNoName) {
   ExpectArea(areas[1], "home", 3, 4, 0);
 }
 
+TEST_F(AreaFileTest, ACornerOfARoomIsAPlace) {
+  const LogCatcher log(base::LogLevel::kWarn);
+  const auto areas = Read("corner: [9, 1, -1.57]\nkitchen_corner: [1, 2, 0]\n");
+  ASSERT_EQ(areas.size(), 2u);
+  ExpectArea(areas[0], "corner", 9, 1, -1.57);
+  ExpectArea(areas[1], "kitchen_corner", 1, 2, 0);
+  EXPECT_THAT(log.lines, ElementsAre());
+}
+
 TEST_F(AreaFileTest, WhatStandsBesideTheOnePlaceOfAGoalIsNamed) {
   const LogCatcher log(base::LogLevel::kWarn);
   const auto areas =
