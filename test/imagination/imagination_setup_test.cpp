@@ -538,7 +538,7 @@ TEST(StartStateTest, RefusesToPutWhatStandsStillElsewhere) {
   const ImaginationSetup setup = file.Load();
   EXPECT_EQ(setup.scene->world.initial.Find("mill7"), nullptr) << "stands in another one";
   const auto told = AllOf(HasSubstr("object 'Mill7' stands still where the world"),
-                          HasSubstr("hall.world:"), HasSubstr("move it in the world's file"));
+                          HasSubstr("model.sdf:1"), HasSubstr("move it in the world's file"));
   EXPECT_THAT(ConfigErrorOf([&] { MakeStartState(setup, "door", {"Mill7"}); }), told);
   PutObject put;
   put.object = "Mill7";
