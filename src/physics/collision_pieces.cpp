@@ -29,10 +29,12 @@ std::vector<Mesh> CutUp(const geometry::TriangleMesh& mesh) {
 /// Worlds of one scene are made by the hundred, of the same meshes.
 class KnownPieces {
  public:
-  std::vector<Mesh> Of(const Mesh& mesh) {
+  /// @param collision  whose shape the mesh is.  @throws base::ConfigError as RequireShape.
+  std::vector<Mesh> Of(const Mesh& mesh, const geometry::Collision& collision) {
     const std::lock_guard<std::mutex> lock(mutex_);
     const auto known = pieces_.find(mesh.get());
     if (known != pieces_.end() && known->second.first.lock() == mesh) return known->second.second;
+    RequireShape(collision);
     for (auto it = pieces_.begin(); it != pieces_.end();)
       it = it->second.first.expired() ? pieces_.erase(it) : std::next(it);
     std::vector<Mesh> pieces = CutUp(*mesh);
@@ -50,11 +52,10 @@ class KnownPieces {
 }  // namespace
 
 std::vector<geometry::Collision> PiecesOf(const geometry::Collision& collision) {
-  RequireShape(collision);
   static KnownPieces known;
   const auto* mesh = std::get_if<Mesh>(&collision.shape);
   if (mesh == nullptr) return {collision};
-  const std::vector<Mesh> pieces = known.Of(*mesh);
+  const std::vector<Mesh> pieces = known.Of(*mesh, collision);
   if (pieces.empty()) return {collision};
   std::vector<geometry::Collision> collisions;
   for (const Mesh& piece : pieces) {
