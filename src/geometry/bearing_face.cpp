@@ -9,6 +9,8 @@
 #include <variant>
 #include <vector>
 
+#include "geometry/mesh_pieces.h"
+
 namespace hires::geometry {
 namespace {
 
@@ -33,19 +35,9 @@ struct LevelFace {
   Aabb bounds;
 };
 
-/// 1 where triangles are counter-clockwise from outside, -1 where from inside: by the sign of the
-/// volume round the middle.
-double WindingOf(const TriangleMesh& mesh, const Pose3& X_WM, const Vector3d& p_WMiddle) {
-  double sum = 0.0;
-  for (const auto& triangle : mesh.triangles) {
-    const auto [a, b, c] = CornersOf(mesh, triangle, X_WM);
-    sum += (a - p_WMiddle).dot((b - p_WMiddle).cross(c - p_WMiddle));
-  }
-  return sum < 0.0 ? -1.0 : 1.0;
-}
-
 /// Triangles of one height together, from below.
-/// @param winding  as WindingOf: only those that look up; 0: those that look down, too
+/// @param winding  1 where triangles are counter-clockwise from outside, -1 where from inside: only
+/// those that look up; 0: those that look down, too
 std::vector<LevelFace> LevelFacesOf(const TriangleMesh& mesh, const Pose3& X_WM, double winding) {
   std::vector<LevelFace> triangles;
   for (const auto& triangle : mesh.triangles) {
@@ -87,7 +79,8 @@ Aabb BearingBounds(const Shape& shape, const Pose3& X_WS) {
   if (mesh == nullptr) return whole;
   const Vector3d size = whole.upper - whole.lower;
   const double least = kLeastOfOutline * size.x() * size.y();
-  const double winding = WindingOf(**mesh, X_WS, 0.5 * (whole.lower + whole.upper));
+  const Vector3d p_SMiddle = X_WS.Inverse() * Vector3d(0.5 * (whole.lower + whole.upper));
+  const double winding = SixfoldVolume(**mesh, p_SMiddle) < 0.0 ? -1.0 : 1.0;
   std::vector<LevelFace> faces = LevelFacesOf(**mesh, X_WS, winding);
   // Sheets are wound either way.
   if (LargestOf(faces) < least) faces = LevelFacesOf(**mesh, X_WS, 0.0);

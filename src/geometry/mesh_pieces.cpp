@@ -80,17 +80,6 @@ std::vector<TriangleMesh> PartsOf(const TriangleMesh& mesh, Groups* groups) {
   return parts;
 }
 
-/// Six times the signed volume [m^3], of a closed part: negative where its triangles face inwards.
-double SixfoldVolume(const TriangleMesh& part) {
-  const Eigen::Vector3d& origin = part.vertices.front();
-  double sum = 0.0;
-  for (const auto& t : part.triangles) {
-    sum += (part.vertices[t[0]] - origin)
-               .dot((part.vertices[t[1]] - origin).cross(part.vertices[t[2]] - origin));
-  }
-  return sum;
-}
-
 bool IsClosed(const TriangleMesh& mesh) {
   std::set<std::pair<int, int>> edges;
   for (const auto& t : mesh.triangles) {
@@ -135,7 +124,7 @@ std::vector<Cavity> CavitiesIn(const std::vector<TriangleMesh>& parts) {
   Aabb all;
   for (const TriangleMesh& part : parts) {
     bounds.push_back(BoundsOfPart(part));
-    is_hollow.push_back(SixfoldVolume(part) < 0.0 && IsClosed(part) ? 1 : 0);
+    is_hollow.push_back(SixfoldVolume(part, part.vertices.front()) < 0.0 && IsClosed(part) ? 1 : 0);
     all.Include(bounds.back());
   }
   if (std::count(is_hollow.begin(), is_hollow.end(), 1) == 0) return {};
@@ -211,6 +200,15 @@ Shape ThickTriangle(const TriangleMesh& mesh, const std::array<int, 3>& triangle
   prism->triangles = {{2, 1, 0}, {3, 4, 5}, {0, 1, 4}, {0, 4, 3},
                       {1, 2, 5}, {1, 5, 4}, {2, 0, 3}, {2, 3, 5}};
   return std::shared_ptr<const TriangleMesh>(std::move(prism));
+}
+
+double SixfoldVolume(const TriangleMesh& mesh, const Eigen::Vector3d& p_M) {
+  double sum = 0.0;
+  for (const auto& t : mesh.triangles) {
+    sum += (mesh.vertices[t[0]] - p_M)
+               .dot((mesh.vertices[t[1]] - p_M).cross(mesh.vertices[t[2]] - p_M));
+  }
+  return sum;
 }
 
 double WindingNumber(const TriangleMesh& mesh, const Eigen::Vector3d& p_M) {

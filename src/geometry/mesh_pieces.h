@@ -25,6 +25,10 @@ bool IsSolid(const TriangleMesh& mesh);
 /// upright.
 Shape ThickTriangle(const TriangleMesh& mesh, const std::array<int, 3>& triangle);
 
+/// Six times the signed volume [m^3] between the surface and a point, which does not matter of a
+/// closed one: negative where triangles face inwards.
+double SixfoldVolume(const TriangleMesh& mesh, const Eigen::Vector3d& p_M);
+
 /// How often the surface goes round a point, its triangles counter-clockwise from outside: 1 within
 /// a closed one, 0 outside and within its cavities, in between where it has holes (van Oosterom and
 /// Strackee, The solid angle of a plane triangle, IEEE Trans. Biomed. Eng. 30(2), 1983).

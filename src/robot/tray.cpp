@@ -4,19 +4,23 @@
 
 namespace hires::robot {
 
+TrayShape LargestFromAbove(const std::vector<geometry::Collision>& shapes_L,
+                           const geometry::Pose3& X_WL) {
+  TrayShape largest;
+  for (const geometry::Collision& shape : shapes_L) {
+    const geometry::Aabb bounds = geometry::BearingBounds(shape.shape, X_WL * shape.X_BS);
+    const Eigen::Vector3d size = bounds.upper - bounds.lower;
+    const double area = size.x() * size.y();
+    if (largest.shape == nullptr || area > largest.area) largest = {&shape, bounds, area};
+  }
+  return largest;
+}
+
 std::optional<geometry::Aabb> TrayPlateOf(const Robot& robot) {
   const auto link = robot.model.FindLink(robot.profile.tray_link);
   if (!link) return std::nullopt;
-  std::optional<geometry::Aabb> plate;
-  double largest = 0.0;
-  for (const geometry::Collision& collision : robot.model.links[*link].collisions) {
-    const geometry::Aabb bounds = geometry::BearingBounds(collision.shape, collision.X_BS);
-    const Eigen::Vector3d size = bounds.upper - bounds.lower;
-    if (size.x() * size.y() <= largest) continue;
-    largest = size.x() * size.y();
-    plate = bounds;
-  }
-  return plate;
+  const TrayShape plate = LargestFromAbove(robot.model.links[*link].collisions, {});
+  return plate.area > 0.0 ? std::make_optional(plate.bounds) : std::nullopt;
 }
 
 bool IsOverPlate(const geometry::Aabb& plate_T, const Eigen::Vector3d& p_T) {

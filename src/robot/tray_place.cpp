@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "geometry/mesh_pieces.h"
-#include "hires/geometry/bearing_face.h"
+#include "hires/robot/tray.h"
 
 namespace hires::robot {
 namespace {
@@ -63,17 +63,9 @@ struct Plate {
 };
 
 Plate PlateOf(const RobotModel& model, const std::vector<Pose3>& X_R, int link) {
-  const geometry::Collision* top = nullptr;
+  const auto [top, bounds, area] = LargestFromAbove(model.links[link].collisions, X_R[link]);
   Plate plate;
-  double largest = 0.0;
-  for (const geometry::Collision& shape : model.links[link].collisions) {
-    const geometry::Aabb bounds = geometry::BearingBounds(shape.shape, X_R[link] * shape.X_BS);
-    const Eigen::Vector3d size = bounds.upper - bounds.lower;
-    if (top != nullptr && size.x() * size.y() <= largest) continue;
-    largest = size.x() * size.y();
-    plate.bounds = bounds;
-    top = &shape;
-  }
+  plate.bounds = bounds;
   const auto outline = geometry::OutlineInBand(top->shape, X_R[link] * top->X_BS,
                                                plate.bounds.lower.z(), plate.bounds.upper.z());
   if (outline) plate.outline = *outline;

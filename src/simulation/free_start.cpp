@@ -7,8 +7,8 @@
 #include <optional>
 
 #include "hires/base/error.h"
-#include "hires/geometry/bearing_face.h"
 #include "hires/robot/posture.h"
+#include "hires/robot/tray.h"
 #include "simulation/start/overlap.h"
 #include "simulation/start_checks.h"
 
@@ -41,17 +41,10 @@ std::optional<TrayPlate> PlateOf(const robot::Robot& robot, const robot::JointPo
   if (!link) return std::nullopt;
   const auto X_RL = robot::ForwardKinematics(robot.model, posture);
   const Pose3 X_BL = X_RL[*robot.model.FindLink(robot.profile.base_link)].Inverse() * X_RL[*link];
-  std::optional<TrayPlate> plate;
-  double largest = 0.0;
-  for (const geometry::Collision& shape : robot.model.links[*link].collisions) {
-    const Pose3 X_BS = X_BL * shape.X_BS;
-    const geometry::Aabb bounds = geometry::BearingBounds(shape.shape, X_BS);
-    const Vector3d size = bounds.upper - bounds.lower;
-    if (size.x() * size.y() <= largest) continue;
-    largest = size.x() * size.y();
-    plate = TrayPlate{&shape, X_BL, X_BS, bounds};
-  }
-  return plate;
+  const auto [shape, bounds_B, area] =
+      robot::LargestFromAbove(robot.model.links[*link].collisions, X_BL);
+  if (!(area > 0.0)) return std::nullopt;
+  return TrayPlate{shape, X_BL, X_BL * shape->X_BS, bounds_B};
 }
 
 /// Out of the face that shows most of itself from above, in the base frame.

@@ -15,23 +15,15 @@ using MeshOfShape = std::shared_ptr<const geometry::TriangleMesh>;
 
 constexpr double kMatter = 0.99;  // of a winding number: within a closed surface
 
-/// Bounds in the mesh's own frame.
-geometry::Aabb BoundsInMesh(const geometry::Aabb& bounds, const Pose3& X_MS) {
-  geometry::Aabb in_mesh;
-  for (int i = 0; i < 8; ++i) {
-    in_mesh.Include(X_MS.Inverse() *
-                    Eigen::Vector3d((i & 1) != 0 ? bounds.upper.x() : bounds.lower.x(),
-                                    (i & 2) != 0 ? bounds.upper.y() : bounds.lower.y(),
-                                    (i & 4) != 0 ? bounds.upper.z() : bounds.lower.z()));
-  }
-  return in_mesh;
-}
-
 /// Whether a triangle of the mesh crosses the prism, or the prism's middle lies in what a closed
 /// surface of it holds; what a mesh merely goes round is free.
 bool MeshMeets(const geometry::TriangleMesh& mesh, const Pose3& X_MS,
                const geometry::Polygon& outline, const geometry::Aabb& bounds) {
-  const geometry::Aabb near = BoundsInMesh(bounds, X_MS);
+  const Pose3 X_SM = X_MS.Inverse();
+  const Eigen::Vector3d middle = 0.5 * (bounds.lower + bounds.upper);
+  const geometry::Aabb near =
+      geometry::BoundsOf(geometry::Box{bounds.upper - bounds.lower},
+                         X_SM * Pose3{middle, Eigen::Quaterniond::Identity()});
   const auto crosses = [&](const std::array<int, 3>& triangle) {
     geometry::Aabb of_triangle;
     for (const int corner : triangle) of_triangle.Include(mesh.vertices[corner]);
@@ -41,8 +33,7 @@ bool MeshMeets(const geometry::TriangleMesh& mesh, const Pose3& X_MS,
     return other && geometry::Distance(outline, *other) == 0.0;
   };
   if (std::any_of(mesh.triangles.begin(), mesh.triangles.end(), crosses)) return true;
-  const Eigen::Vector3d middle = 0.5 * (bounds.lower + bounds.upper);
-  return geometry::WindingNumber(mesh, X_MS.Inverse() * middle) > kMatter;
+  return geometry::WindingNumber(mesh, X_SM * middle) > kMatter;
 }
 
 /// Whether a thing as its hull reaches more than the slack into a shape.
