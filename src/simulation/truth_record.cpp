@@ -35,7 +35,7 @@ void TruthRecord::LookAt(const RobotSimulator& simulator, int index,
   fate.tilt = detector.now().tilt;
   fate.max_tilt = std::max(fate.max_tilt, fate.tilt);
   fate.falls = detector.falls();
-  if (fate.first_fall == world::Fall::kNone) fate.first_fall = fall;
+  if (world::IsWorse(fall, fate.first_fall)) fate.first_fall = fall;
   fate.stands = detector.stands();
 }
 

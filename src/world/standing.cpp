@@ -39,6 +39,11 @@ bool IsAway(const StandingCriterion& criterion, const Departure& departure) {
   return departure.drop > criterion.drop || departure.slide > criterion.slide;
 }
 
+bool IsWorse(Fall fall, Fall than) {
+  if (than == Fall::kSlid) return fall != Fall::kNone && fall != Fall::kSlid;
+  return than == Fall::kNone && fall != Fall::kNone;
+}
+
 bool IsUpright(const StandingCriterion& criterion, const Pose3& X_MO) {
   return X_MO.IsFinite() && geometry::TiltOf(X_MO.rotation) < criterion.tilt;
 }
@@ -50,7 +55,7 @@ long StepsPerLook(double time_step) {
 
 Fall FallDetector::Update(const Pose3& X_MO, bool is_held, double t, const Pose3& X_MC) {
   now_ = {};
-  if (!X_MO.IsFinite()) return is_down() ? Fall::kNone : Begin(Fall::kLost);
+  if (!X_MO.IsFinite()) return Note(Fall::kLost);
   if (is_held) {
     Reset();
     now_ = {geometry::TiltOf(X_MO.rotation), 0.0, 0.0};
@@ -61,9 +66,8 @@ Fall FallDetector::Update(const Pose3& X_MO, bool is_held, double t, const Pose3
   now_ = DepartureFrom(*X_CstoodO_, X_CO);
   now_.tilt = geometry::TiltOf(X_MO.rotation);  // the carrier may lean
   const Fall seen = FallOf(criterion_, now_, HasLeanedLong(t));
-  if (!is_down()) return Begin(seen);
-  const bool is_put_up = seen == Fall::kNone && now_.tilt < criterion_.upright_tilt();
-  if (is_put_up) fall_ = Fall::kNone;
+  if (seen != Fall::kNone) return Note(seen);
+  if (now_.tilt < criterion_.upright_tilt()) fall_ = Fall::kNone;  // it was put up
   return Fall::kNone;
 }
 
@@ -76,10 +80,11 @@ bool FallDetector::HasLeanedLong(double t) {
   return t - *leaning_since_ >= criterion_.hold_time - kRounding;
 }
 
-Fall FallDetector::Begin(Fall fall) {
-  fall_ = fall;
-  if (fall != Fall::kNone) ++falls_;
-  return fall;
+Fall FallDetector::Note(Fall seen) {
+  if (is_down() && !IsWorse(seen, fall_)) return Fall::kNone;
+  if (!is_down()) ++falls_;
+  fall_ = seen;
+  return seen;
 }
 
 void FallDetector::Reset() {

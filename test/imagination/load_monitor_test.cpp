@@ -137,6 +137,33 @@ TEST(LoadMonitorTest, WhatSlidesFarEnoughHasFallen) {
   EXPECT_LT(watched.monitor.max_tilt(), 0.1);
 }
 
+TEST(LoadMonitorTest, WhatSlidesOffTheTrayFellAndFellOnce) {
+  world::World room = hires::test_support::Room();
+  hires::test_support::AddModel(&room, hires::test_support::Mill("puck", 0.02, 0.04, 0.3, 0.05));
+  simulation::Variation slippery;
+  slippery.friction_factor = 0.05;
+  RobotSimulator simulator(simulation::MakeScene(room, hires::test_support::TrayRobot()), slippery,
+                           {{OnTray("puck1", "puck", kStart)}}, StandingAt(kStart), base::Rng(1));
+  const RolloutParams params;
+  LoadMonitor monitor(&simulator, params, {});
+  std::vector<std::string> seen;  // what was not well, in its order
+  bool is_waited_for = true;      // from the slide until it lies
+  for (int step = 0; step < 3000; ++step) {
+    robot::Command command;
+    command.base_velocity = geometry::Twist2{0.0, 0.9, 0.0};
+    simulator.Send(command);
+    simulator.Step();
+    monitor.Look();
+    const std::string why = ToString(monitor.WhyNotWell());
+    if (!why.empty() && (seen.empty() || seen.back() != why)) seen.push_back(why);
+    if (why == "object_slid: puck1") is_waited_for = is_waited_for && !monitor.IsSettled();
+  }
+  EXPECT_THAT(seen, testing::ElementsAre("object_slid: puck1", "object_fell: puck1"));
+  EXPECT_TRUE(is_waited_for) << "what slides may fall yet";
+  EXPECT_EQ(monitor.falls(), 1);
+  EXPECT_THAT(monitor.Down(), testing::ElementsAre("puck1"));
+}
+
 TEST(LoadMonitorTest, WhatFallsIsNamedRatherThanWhatSlidBefore) {
   world::World room = hires::test_support::Room();
   hires::test_support::AddModel(&room, hires::test_support::Mill("puck", 0.02, 0.04, 0.3, 0.05));

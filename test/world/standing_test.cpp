@@ -121,6 +121,34 @@ TEST(FallDetectorTest, DroppingAndSlidingNeedNoHoldTime) {
   EXPECT_EQ(sliding.Update(At(0.11, 1.0), false, 0.0), Fall::kSlid);
 }
 
+TEST(FallDetectorTest, WhatSlidesOffAndFallsFellOnce) {
+  FallDetector dropping{{}}, toppling{{}};
+  for (FallDetector* detector : {&dropping, &toppling}) {
+    detector->Update(At(0.0, 1.0), false, 0.0);
+    EXPECT_EQ(detector->Update(At(0.11, 1.0), false, 0.1), Fall::kSlid);
+    EXPECT_EQ(detector->Update(At(0.2, 1.0), false, 0.2), Fall::kNone) << "it slides on";
+  }
+  EXPECT_EQ(dropping.Update(At(0.3, 0.9), false, 0.3), Fall::kDropped);
+  EXPECT_EQ(dropping.Update(At(0.3, 0.0, 1.5), false, 0.4), Fall::kNone) << "down is down";
+  EXPECT_EQ(dropping.fall(), Fall::kDropped);
+  EXPECT_EQ(dropping.falls(), 1);
+  EXPECT_EQ(toppling.Update(At(0.2, 1.0, 0.6), false, 0.3), Fall::kToppled);
+  EXPECT_EQ(toppling.Update(At(0.2, 1.0), false, 0.4), Fall::kNone);
+  EXPECT_EQ(toppling.fall(), Fall::kToppled) << "upright, but not where it stood";
+  EXPECT_EQ(toppling.falls(), 1);
+}
+
+TEST(FallDetectorTest, OnlyASlideIsLessThanAFall) {
+  const Fall all[] = {Fall::kLost, Fall::kToppled, Fall::kDropped, Fall::kSlid};
+  for (const Fall fall : all) {
+    EXPECT_TRUE(IsWorse(fall, Fall::kNone));
+    EXPECT_FALSE(IsWorse(Fall::kNone, fall));
+    EXPECT_EQ(IsWorse(fall, Fall::kSlid), fall != Fall::kSlid);
+    for (const Fall than : {Fall::kLost, Fall::kToppled, Fall::kDropped})
+      EXPECT_FALSE(IsWorse(fall, than));
+  }
+}
+
 TEST(FallDetectorTest, AFallInSmallStepsIsSeen) {
   FallDetector detector{{}};
   for (int i = 0; i <= 100; ++i) detector.Update(At(0.0, 1.0 - 0.01 * i), false, 0.01 * i);

@@ -16,7 +16,7 @@ struct ObjectFate {
   double tilt{0.0};         ///< [rad] now, against the world's up-axis
   double max_tilt{0.0};     ///< [rad]
   int falls{0};
-  world::Fall first_fall{world::Fall::kNone};  ///< in what way it fell first
+  world::Fall first_fall{world::Fall::kNone};  ///< what slid and fell then: how it fell
   bool stands{false};  ///< now: it is there, nothing holds it, it is not down
 };
 

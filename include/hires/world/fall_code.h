@@ -12,8 +12,7 @@ enum class FallenThing {
   kHeld      ///< it was in a hand
 };
 
-/// What a fall is called, in imagination and in truth. The first fall of a thing counts: what slid
-/// and toppled then has slid. Nothing for Fall::kNone.
+/// What a fall is called, in imagination and in truth. Nothing for Fall::kNone.
 base::FailureCode CodeOf(Fall fall, FallenThing thing);
 
 }  // namespace hires::world

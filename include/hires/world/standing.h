@@ -34,6 +34,9 @@ enum class Fall {
   kSlid      ///< it is not where it stood
 };
 
+/// What falls is worse than what only slid, and that is worse than nothing; ways to fall are alike.
+bool IsWorse(Fall fall, Fall than);
+
 /// How far a thing is from standing where it stood.
 struct Departure {
   double tilt{0.0};   ///< [rad] alpha of Eq. 5.1
@@ -61,8 +64,9 @@ long StepsPerLook(double time_step);
 
 /// Follows one thing and says when it falls. A thing stands where it was first seen, where a hand
 /// let go of it, or where it was first seen after Reset(). What a hand holds may lean and be moved
-/// as it likes and cannot fall. A fall counts once; it may fall again after it was put up: held and
-/// let go, or upright (within the criterion's upright_tilt) where it stood before.
+/// as it likes and cannot fall. A fall counts once, also one that begins as a slide and ends worse
+/// (IsWorse); it may fall again after it was put up: held and let go, or upright (within the
+/// criterion's upright_tilt) where it stood before.
 class FallDetector {
  public:
   explicit FallDetector(const StandingCriterion& criterion) : criterion_(criterion) {}
@@ -73,7 +77,8 @@ class FallDetector {
   ///              on furniture or the floor. May be another one after a hand held it, or Reset().
   /// @param t     [s] While time stands still nothing leans any longer; from a clock that is set
   ///              back on, the hold time counts from its beginning.
-  /// @return the fall that this look completes; kNone at all other looks.
+  /// @return the fall that this look completes, or to which a slide comes with it; kNone at all
+  ///         other looks.
   Fall Update(const geometry::Pose3& X_MO, bool is_held, double t,
               const geometry::Pose3& X_MC = {});
 
@@ -89,7 +94,7 @@ class FallDetector {
   const Departure& now() const { return now_; }  ///< at the last look; of a held thing its tilt
 
  private:
-  Fall Begin(Fall fall);
+  Fall Note(Fall seen);
   bool HasLeanedLong(double t);
 
   StandingCriterion criterion_;

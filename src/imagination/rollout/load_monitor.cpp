@@ -107,6 +107,7 @@ void LoadMonitor::LookAtBystanders() {
 }
 
 void LoadMonitor::LookAt(Object* object) {
+  const int falls_before = object->watch.detector().falls();
   const Fall fall = object->watch.Look(*simulator_, object->index);
   NoteFall(FailureOf(*object, fall));
   if (fall == Fall::kLost) {
@@ -114,7 +115,7 @@ void LoadMonitor::LookAt(Object* object) {
     return;
   }
   tilt_ = std::max(tilt_, object->watch.detector().now().tilt);
-  if (fall != Fall::kNone && !object->fell_while_settling) ++falls_;
+  if (!object->fell_while_settling) falls_ += object->watch.detector().falls() - falls_before;
   if (params_.put_back && object->is_load) PutBackIfDown(object);
 }
 
@@ -159,13 +160,15 @@ bool LoadMonitor::Moves(int index) const {
   return simulator_->VelocityOf(index).linear.norm() > kStillSpeed;
 }
 
-bool LoadMonitor::Shakes(const Object& object) const {
+/// It leans, or slides, and may come to fall.
+bool LoadMonitor::MayFall(const Object& object) const {
   const world::FallDetector& detector = object.watch.detector();
+  if (detector.fall() == Fall::kSlid) return Moves(object.index);
   return detector.now().tilt > params_.shaking_tilt && !detector.is_down();
 }
 
 bool LoadMonitor::IsSettled() const {
-  if (std::any_of(objects_.begin(), objects_.end(), [&](const Object& o) { return Shakes(o); })) {
+  if (std::any_of(objects_.begin(), objects_.end(), [&](const Object& o) { return MayFall(o); })) {
     return false;
   }
   const bool is_put_down =

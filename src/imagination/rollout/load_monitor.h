@@ -103,7 +103,7 @@ class LoadMonitor {
   void NoteFall(const base::Failure& fall);
   void PutBackIfDown(Object* object);
   bool IsHeld(const Object& object) const;
-  bool Shakes(const Object& object) const;
+  bool MayFall(const Object& object) const;
   bool IsHandled(const Object& object) const;
   bool Moves(int index) const;
   base::Failure FailureOf(const Object& object, world::Fall fall) const;
