@@ -332,6 +332,7 @@ TEST(MoveBaseTest, GivesUpInACageAfterItsPatience) {
     if (seen->time > 2.0) seen->obstacles_M = CageRound(robot->X_MB);
   });
   ExpectFailed("no_valid_trajectory", run);
+  EXPECT_THAT(run.status.failure.detail, testing::HasSubstr("a thing that stands about"));
   EXPECT_NEAR(run.duration, 2.0 + MoveBaseParams{}.controller_patience, 1.0);
   EXPECT_EQ(run.last_command.vx, 0.0);
 }

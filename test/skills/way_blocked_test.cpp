@@ -166,7 +166,6 @@ robot::Robot WithRootAskew(double length, double width, double askew) {
 }
 
 /// A car with a bed far to one side: what a round robot would stand clear of, the bed reaches into.
-/// Of all bases a car alone is asked whether it fits its goal as it is to be headed there.
 robot::Robot CarWithBed(double length, double yaw) {
   robot::Robot robot = TrayRobot();
   std::vector<Eigen::Vector2d> corners = robot.profile.footprint;
@@ -248,6 +247,60 @@ TEST(WayBlockedTest, ABaseThatCannotTurnSaysWhatItTouches) {
                     HasSubstr("degrees to the right it touches 'north' (hall.world:2)")));
   EXPECT_EQ(end_of(8.0, {8.0, 0.5, 0.0}).progress, Progress::kSucceeded);
   EXPECT_EQ(end_of(3.0, {8.0, 0.5, geometry::kPi}).progress, Progress::kSucceeded);
+}
+
+// Where the round that fits into a base is clear of a wall, but the base is not.
+TEST(WayBlockedTest, AGoalWithRoomForTheBaseNowhereWithinItsToleranceIsToldAtOnce) {
+  base::Rng rng(41);
+  int num_blocked = 0, num_free = 0;
+  for (int i = 0; i < Rounds(48); ++i) {
+    const double length = rng.Uniform(1.6, 3.0), yaw = rng.Uniform(-3.0, 3.0);
+    const double depth = rng.Uniform(-0.2, 0.6);  // of the base in the wall, if it stood right
+    const double side = rng.Bernoulli(0.5) ? 1.0 : -1.0;
+    const Pose2 X_MT{1.0, 2.0, yaw};
+    world::World world;
+    for (const double end : {-12.0, 12.0})  // so large is the map
+      world.statics.push_back(Block("end", {0.2, 0.2, 2.0}, {end, end, 1.0}));
+    world.statics.push_back(Block("wall", {0.4, 6.0, 2.0}, {}));
+    const double to_wall = 0.5 * length + TrayRobot().profile.footprint_padding - depth;
+    world.statics.back().X_MB = geometry::Lift(X_MT * Pose2{side * (to_wall + 0.2), 0.0, 0.0});
+    world.statics.back().X_MB.translation.z() = 1.0;
+    const auto context = std::make_shared<const DrivingContext>(
+        MakeDrivingContext(world, LongRobot(length, 0.6), MoveBaseParams{}));
+    const Status status = FirstWord(context, X_MT * Pose2{-4.0 * side, 0.0, 0.0}, X_MT);
+    SCOPED_TRACE(fmt::format("round {}: length {} m, {} m deep", i, length, depth));
+    if (depth > 0.3) {
+      ++num_blocked;
+      ASSERT_EQ(status.failure.code, FailureCode::kGoalBlocked);
+      EXPECT_THAT(status.failure.detail,
+                  AllOf(HasSubstr("the goal at x"), HasSubstr("'wall'"),
+                        HasSubstr(side > 0.0 ? "to the front" : "to the back")));
+    } else if (depth < 0.1) {
+      ++num_free;
+      EXPECT_EQ(ToString(status.failure), "");
+    }
+  }
+  EXPECT_GT(num_blocked, 0);
+  EXPECT_GT(num_free, 0);
+}
+
+TEST(WayBlockedTest, ABaseThatFindsNoMotionSaysWhatIsNextToIt) {
+  world::World cage;
+  const double gap = 0.06;  // [m] on all sides of the base
+  for (const double side : {1.0, -1.0}) {
+    cage.statics.push_back(Block("bars", {0.1, 3.0, 2.0}, {side * (0.25 + gap + 0.05), 0.0, 1.0}));
+    cage.statics.push_back(Block("rails", {3.0, 0.1, 2.0}, {0.0, side * (0.25 + gap + 0.05), 1.0}));
+    cage.statics.push_back(Block("end", {0.2, 0.2, 2.0}, {side * 8.0, side * 8.0, 1.0}));
+  }
+  const auto context = std::make_shared<const DrivingContext>(
+      MakeDrivingContext(cage, TrayRobot(), MoveBaseParams{}));
+  const Pose2 from{0.0, 0.0, 0.0};
+  EXPECT_THAT(WhyNoMotion(*context, *context->costmap, context->footprint, from),
+              AllOf(HasSubstr("finds no motion at x 0.00 m, y 0.00 m, yaw 0.00 rad that touches "
+                              "nothing: '"),
+                    HasSubstr("m from it")));
+  EXPECT_EQ(WhyNoMotion(*context, *context->costmap, context->footprint, {4.0, 4.0, 0.0}), "")
+      << "nothing is near";
 }
 
 TEST(WayBlockedTest, AGoalAtWhichOnlyTheHeadingIsWrongSaysWhatReachesIntoWhat) {

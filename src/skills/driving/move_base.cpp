@@ -96,6 +96,25 @@ std::optional<navigation::Costmap> WithRoom(const navigation::Costmap& map, cons
   return map.WithRoomFor(footprint_M);
 }
 
+/// Whether a robot may stand somewhere within the tolerance of a goal and touch nothing.
+bool HasRoomAt(const navigation::Costmap& map, const navigation::Footprint& footprint,
+               const Pose2& X_MGoal, const navigation::DwaParams& tolerance) {
+  constexpr double kYawStep = 0.0425;  // [rad]
+  const double step = 0.5 * map.resolution();
+  const double xy = tolerance.xy_goal_tolerance, yaw = tolerance.yaw_goal_tolerance;
+  if (map.FootprintCost(footprint, X_MGoal) < navigation::kLethalCost) return true;
+  for (double turned = -yaw; turned <= yaw; turned += kYawStep) {
+    for (double x = -xy; x <= xy; x += step) {
+      for (double y = -xy; y <= xy; y += step) {
+        const Pose2 X_MB{X_MGoal.x + x, X_MGoal.y + y, X_MGoal.yaw + turned};
+        const bool is_within = std::hypot(x, y) <= xy;
+        if (is_within && map.FootprintCost(footprint, X_MB) < navigation::kLethalCost) return true;
+      }
+    }
+  }
+  return false;
+}
+
 /// Centres keep so far from what is in a layer that the robot may head anywhere. Where it stands,
 /// and at its goal, it heads somewhere: a mast may be nearer to a counter's edge than that.
 std::optional<navigation::Costmap> WithPlaces(const navigation::Costmap& map,
@@ -370,6 +389,11 @@ std::optional<Status> MoveBase::Plan(const robot::Observation& observation) {
   const double slack = context_->params.local.xy_goal_tolerance;
   if (const auto why = WhyOffMap(*costmap_, footprint_, "goal", X_MGoal_, slack))
     return Failed({base::FailureCode::kGoalBlocked, {}, *why});
+  const auto here = WithRoom(*costmap_, observation.X_MB, Body());
+  const navigation::Costmap& around = here ? *here : *costmap_;
+  if (!car_ && !HasRoomAt(around, Body(), X_MGoal_, context_->params.local))
+    return Failed(
+        {base::FailureCode::kGoalBlocked, {}, WhyBlocked(*context_, around, "goal", X_MGoal_)});
   if (sensed_ &&
       FindPath(MapWithMarks(observation), observation.X_MB) == navigation::PathStatus::kFound) {
     return std::nullopt;
@@ -442,8 +466,10 @@ bool MoveBase::NoteMotion(const robot::Observation& observation) {
 
 Status MoveBase::Stuck(base::FailureCode code, const robot::Observation& observation) const {
   std::string why = WhyStuck(*now_, footprint_, observation.X_MB);
-  if (why.empty() && code == base::FailureCode::kNoValidTrajectory)
-    why = WhyNoTurn(*context_, *now_, footprint_, observation.X_MB);
+  if (code == base::FailureCode::kNoValidTrajectory) {
+    if (why.empty()) why = WhyNoTurn(*context_, *now_, footprint_, observation.X_MB);
+    if (why.empty()) why = WhyNoMotion(*context_, *now_, footprint_, observation.X_MB);
+  }
   return Failed({code, {}, why});
 }
 

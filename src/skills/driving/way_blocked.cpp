@@ -62,25 +62,38 @@ bool IsTaken(const Costmap& costmap, int column, int row) {
   return IsSolid(costmap, column, row) || costmap.HasObstacle(column, row);
 }
 
-/// The middle of a cell below an outline that is no room for something of a base; none: there is no
-/// such cell on the map.
-std::optional<Eigen::Vector2d> TakenBelow(const Costmap& costmap,
-                                          const geometry::Polygon& outline_M) {
-  // Of some cells a part lies below it, and not the middle.
-  const geometry::Polygon padded_M = geometry::Padded(outline_M, costmap.resolution());
+/// The square of a cell, by its middle.
+geometry::Polygon CellAt(const Costmap& costmap, const Eigen::Vector2d& cell_M) {
+  const double half = 0.5 * costmap.resolution();
+  return {cell_M + Eigen::Vector2d(-half, -half), cell_M + Eigen::Vector2d(half, -half),
+          cell_M + Eigen::Vector2d(half, half), cell_M + Eigen::Vector2d(-half, half)};
+}
+
+struct TakenCell {
+  Eigen::Vector2d middle;  // in the map
+  double distance{0.0};    // [m]
+};
+
+/// The cell nearest to an outline, no farther than `most` [m], that is no room for something of a
+/// base; none: there is no such cell on the map.
+std::optional<TakenCell> NearestTakenTo(const Costmap& costmap, const geometry::Polygon& outline_M,
+                                        double most) {
   Eigen::AlignedBox2d box;
   for (const Eigen::Vector2d& p_M : outline_M) box.extend(p_M);
   int left = 0, lower = 0, right = 0, upper = 0;
-  costmap.CellOf(box.min(), &left, &lower);
-  costmap.CellOf(box.max(), &right, &upper);
+  costmap.CellOf(box.min() - Eigen::Vector2d::Constant(most), &left, &lower);
+  costmap.CellOf(box.max() + Eigen::Vector2d::Constant(most), &right, &upper);
+  std::optional<TakenCell> nearest;
   for (int row = lower; row <= upper; ++row) {
     for (int column = left; column <= right; ++column) {
       if (!costmap.Inside(column, row) || !IsTaken(costmap, column, row)) continue;
-      const Eigen::Vector2d p_M = costmap.CentreOf(column, row);
-      if (geometry::Contains(padded_M, p_M)) return p_M;
+      const Eigen::Vector2d middle = costmap.CentreOf(column, row);
+      const double distance = geometry::Distance(outline_M, CellAt(costmap, middle));
+      if (distance > most || (nearest && distance >= nearest->distance)) continue;
+      nearest = {middle, distance};
     }
   }
-  return std::nullopt;
+  return nearest;
 }
 
 /// "the base, 8.23 m long and 0.63 m wide with its padding,"
@@ -484,9 +497,7 @@ class Explainer {
   }
 
   geometry::Polygon CellAt(const Eigen::Vector2d& cell_M) const {
-    const double half = 0.5 * costmap_.resolution();
-    return {cell_M + Eigen::Vector2d(-half, -half), cell_M + Eigen::Vector2d(half, -half),
-            cell_M + Eigen::Vector2d(half, half), cell_M + Eigen::Vector2d(-half, half)};
+    return skills::CellAt(costmap_, cell_M);
   }
 
   static std::string NameText(const world::NamedOutline& thing) {
@@ -734,14 +745,26 @@ std::string WhyNoTurn(const DrivingContext& context, const Costmap& costmap,
       if (costmap.CostBelow(navigation::Footprint(outline_M)) >= navigation::kLethalCost) break;
     }
     widest = std::max(widest, angle - 1);
-    const auto touched = TakenBelow(costmap, outline_M);
+    const auto touched = NearestTakenTo(costmap, outline_M, costmap.resolution());
     sides.push_back(fmt::format("{} degrees to the {} it touches {}", angle,
                                 sign > 0 ? "left" : "right",
-                                touched ? explainer.WhatIsAt(*touched) : "the map's end"));
+                                touched ? explainer.WhatIsAt(touched->middle) : "the map's end"));
   }
   if (widest >= kEnough) return "";
   return fmt::format("{} cannot turn at x {:.2f} m, y {:.2f} m: {}", SizeText(footprint), X_MB.x,
                      X_MB.y, base::Join(sides, ", "));
+}
+
+std::string WhyNoMotion(const DrivingContext& context, const Costmap& costmap,
+                        const geometry::Polygon& footprint, const Pose2& X_MB) {
+  constexpr double kNear = 0.3;  // [m] What is farther from a base that stands is not in its way.
+  const auto next = NearestTakenTo(costmap, geometry::Transformed(X_MB, footprint), kNear);
+  if (!next) return "";
+  return fmt::format(
+      "{} finds no motion at x {:.2f} m, y {:.2f} m, yaw {:.2f} rad that touches nothing: {} is "
+      "{:.2f} m from it",
+      SizeText(footprint), X_MB.x, X_MB.y, X_MB.yaw,
+      Explainer(context, costmap).WhatIsAt(next->middle), next->distance);
 }
 
 std::string WhyNoPath(const DrivingContext& context, const Costmap& costmap, const Pose2& X_MStart,

@@ -55,6 +55,10 @@ std::string WhyStuck(const navigation::Costmap& costmap, const geometry::Polygon
 std::string WhyNoTurn(const DrivingContext& context, const navigation::Costmap& costmap,
                       const geometry::Polygon& footprint, const geometry::Pose2& X_MB);
 
+/// Of a base that found no motion where it stands: what is next to it, and how near. Else empty.
+std::string WhyNoMotion(const DrivingContext& context, const navigation::Costmap& costmap,
+                        const geometry::Polygon& footprint, const geometry::Pose2& X_MB);
+
 /// Where the way from start to goal ends, and by what; heights as above.
 /// @param narrow  where the footprint is too wide, if that is why; else null.
 std::string WhyNoPath(const DrivingContext& context, const navigation::Costmap& costmap,
