@@ -124,9 +124,14 @@ TEST(ComesOnTest, WhoGoesToAndFroOverMetresDoesNotAndWhoIsSlowDoes) {
 
 TEST(StallTextTest, SaysSinceWhenWhereAndWhatMayHelp) {
   const Stall stall{Stall::Kind::kCircles, 12.04, {3.0, 1.0, 0.0}, 0.31, 0.2, -1.2};
-  EXPECT_THAT(StallText(stall, {}),
+  EXPECT_THAT(StallText(stall, {}, ""),
               AllOf(HasSubstr("since 12.0 s it drives in circles 0.31 m from its goal"),
                     HasSubstr("x 3.00 m, y 1.00 m"), HasSubstr("xy_goal_tolerance (0.2 m)")));
+  EXPECT_THAT(StallText(stall, {}, "the goal is 0.12 m from 's'"),
+              HasSubstr("what may help: another goal, for the goal is 0.12 m from 's'"));
+  const Stall far{Stall::Kind::kStands, 12.04, {3.0, 1.0, 0.0}, 4.0, 0.0, 0.0};
+  EXPECT_THAT(StallText(far, {}, "the goal is 0.12 m from 's'"),
+              ::testing::Not(HasSubstr("another goal")));
   EXPECT_THAT(UnderWayText(300.0, 7.0, true), AllOf(HasSubstr("7.0 m away"), HasSubstr("300 s")));
   EXPECT_THAT(UnderWayText(300.0, 7.0, false),
               AllOf(HasSubstr("7.0 m away"), HasSubstr("more time does not help")));

@@ -89,6 +89,10 @@ DrivingContext MakeDrivingContext(const world::World& world, const robot::Robot&
 DrivingContext MakeDrivingContext(const world::OccupancyGrid& map, const robot::Robot& robot,
                                   const MoveBaseParams& params);
 
+/// What is in the way of a base that stands at its goal exactly, as goal_blocked tells it; empty:
+/// nothing. Within the goal's tolerance there may be room.
+std::string WhyGoalIsTight(const DrivingContext& context, const geometry::Pose2& X_MGoal);
+
 /// Drives to a pose in the map round all known obstacles: A* on the inflated costmap, dynamic
 /// window approach for control, as move_base does, with room for the arms as they are when it
 /// begins. A base that steers like a car: hybrid A*, and a follower of arcs; where it came

@@ -19,17 +19,18 @@ constexpr double kOneSided = 0.8;        // share of all turning that is to one 
 constexpr double kComesOn = 0.2;         // of its best pace
 constexpr double kFullTurn = 2.0 * M_PI;
 
+bool IsAtGoal(const Stall& stall) { return stall.to_goal && *stall.to_goal <= kAtGoal; }
+
 std::string GoalText(const Stall& stall) {
   if (!stall.to_goal) return {};
-  return stall.to_goal <= kAtGoal ? fmt::format(" {:.2f} m from its goal", *stall.to_goal)
-                                  : fmt::format(", its goal {:.1f} m away", *stall.to_goal);
+  return IsAtGoal(stall) ? fmt::format(" {:.2f} m from its goal", *stall.to_goal)
+                         : fmt::format(", its goal {:.1f} m away", *stall.to_goal);
 }
 
 /// What would help, where that is known.
 std::string Remedy(const Stall& stall, const skills::MoveBaseParams& driving) {
   const navigation::DwaParams& local = driving.local;
-  const bool is_at_goal = stall.to_goal && *stall.to_goal <= kAtGoal;
-  if (!is_at_goal) {
+  if (!IsAtGoal(stall)) {
     return stall.kind == Stall::Kind::kStands
                ? "look at what it waits for: its laser, its localisation, or who is in its way"
                : fmt::format(
@@ -138,10 +139,12 @@ std::string WhatItDoes(const Stall& stall) {
   return {};
 }
 
-std::string StallText(const Stall& stall, const skills::MoveBaseParams& driving) {
+std::string StallText(const Stall& stall, const skills::MoveBaseParams& driving,
+                      const std::string& why_tight) {
+  const bool is_tight = IsAtGoal(stall) && !why_tight.empty();
   return fmt::format("since {:.1f} s it {}, at x {:.2f} m, y {:.2f} m; what may help: {}",
                      stall.since, WhatItDoes(stall), stall.X_MB.x, stall.X_MB.y,
-                     Remedy(stall, driving));
+                     is_tight ? "another goal, for " + why_tight : Remedy(stall, driving));
 }
 
 std::string UnderWayText(double time_limit, const std::optional<double>& to_goal, bool comes_on) {

@@ -30,6 +30,9 @@ class ProgressWatch {
   /// that is short against the whole, as it was still under way.
   std::optional<Stall> StallAtEnd() const;
 
+  /// Where it should come to, as far as it was told.
+  const std::optional<geometry::Pose2>& X_MGoal() const { return X_MGoal_; }
+
   /// [m] from where it was last to where it should come to; nothing where it knows no goal.
   std::optional<double> ToGoal() const;
 
@@ -49,8 +52,10 @@ class ProgressWatch {
 /// "circles its goal 0.31 m off": what it does, for people.
 std::string WhatItDoes(const Stall& stall);
 
-/// The same with since when and where, and which parameter would help.
-std::string StallText(const Stall& stall, const skills::MoveBaseParams& driving);
+/// The same with since when and where, and which parameter would help; at a goal that has no room
+/// for the base (skills::WhyGoalIsTight; empty: it has) another goal would.
+std::string StallText(const Stall& stall, const skills::MoveBaseParams& driving,
+                      const std::string& why_tight);
 
 /// What to say of a drive that ran out of time and was not stuck at its end.
 std::string UnderWayText(double time_limit, const std::optional<double>& to_goal, bool comes_on);

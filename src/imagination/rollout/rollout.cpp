@@ -166,7 +166,9 @@ class Player {
     if (stall && hooks.on_stall) hooks.on_stall(start_ + stall->since, WhatItDoes(*stall));
     if (!failure->detail.empty()) return;
     if (stall) {
-      failure->detail = StallText(*stall, driving_->params);
+      const auto goal = progress_.X_MGoal();
+      const std::string why_tight = goal ? skills::WhyGoalIsTight(*driving_, *goal) : "";
+      failure->detail = StallText(*stall, driving_->params, why_tight);
     } else if (failure->code == Code::kTimedOut) {
       failure->detail = UnderWayText(params_.time_limit, progress_.ToGoal(), progress_.ComesOn());
     }

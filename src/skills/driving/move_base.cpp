@@ -251,6 +251,12 @@ geometry::Polygon FootprintOf(const DrivingContext& context,
   return geometry::ConvexHull(std::move(corners));
 }
 
+std::string WhyGoalIsTight(const DrivingContext& context, const Pose2& X_MGoal) {
+  const navigation::Costmap& map = *context.costmap;
+  if (map.FootprintCost(context.body, X_MGoal) < navigation::kLethalCost) return "";
+  return WhyBlocked(context, map, "goal", X_MGoal);
+}
+
 MoveBase::MoveBase(std::shared_ptr<const DrivingContext> context, const Pose2& X_MGoal,
                    const robot::MotionSet& motion_set)
     : context_(std::move(context)),
@@ -465,7 +471,10 @@ bool MoveBase::NoteMotion(const robot::Observation& observation) {
 }
 
 Status MoveBase::Stuck(base::FailureCode code, const robot::Observation& observation) const {
+  constexpr double kAtGoal = 1.0;  // [m] what goes wrong so near has to do with the goal
   std::string why = WhyStuck(*now_, footprint_, observation.X_MB);
+  const double to_goal = (X_MGoal_.position() - observation.X_MB.position()).norm();
+  if (why.empty() && to_goal <= kAtGoal) why = WhyGoalIsTight(*context_, X_MGoal_);
   if (code == base::FailureCode::kNoValidTrajectory) {
     if (why.empty()) why = WhyNoTurn(*context_, *now_, footprint_, observation.X_MB);
     if (why.empty()) why = WhyNoMotion(*context_, *now_, footprint_, observation.X_MB);
