@@ -2,7 +2,10 @@
 
 #include <fmt/format.h>
 
+#include <set>
+
 #include "hires/base/error.h"
+#include "hires/base/log.h"
 #include "hires/base/text.h"
 #include "hires/imagination/imagination_setup.h"
 #include "hires/robot/link_bounds.h"
@@ -58,6 +61,20 @@ void RefuseLoad(const ImaginationSetup& setup, const std::vector<std::string>& o
       fmt::format("'{}' cannot be carried: {}", on_tray.front(), robot::NoTrayText(robot)));
 }
 
+/// Where a tray is too small, or has walls, for its own place beside the others.
+void MoveToRoom(const simulation::Scene& scene, const robot::RobotState& robot,
+                const std::vector<world::ObjectState>& others, world::ObjectState* object) {
+  const auto X_MO = simulation::FreeOnTray(scene, robot, *object, others);
+  if (!X_MO || X_MO->translation == object->X_MO.translation) return;
+  object->X_MO = *X_MO;
+  const geometry::Pose3 X_MTray = geometry::Lift(robot.X_MB) * scene.X_BO;
+  const Eigen::Vector3d p_T = (X_MTray.Inverse() * *X_MO).translation;
+  base::Log(base::LogLevel::kInfo,
+            fmt::format("object={} note=\"{:g} m beside the middle of the tray it has no room: it "
+                        "begins at x {:.2f} m, y {:.2f} m of it\"",
+                        object->name, kSlotDistance, p_T.x(), p_T.y()));
+}
+
 void RefuseOtherStorey(const ImaginationSetup& setup, const std::string& area) {
   const auto elsewhere = setup.skills->elsewhere.find(base::ToLower(area));
   if (elsewhere != setup.skills->elsewhere.end())
@@ -73,14 +90,21 @@ void AddInitialObjects(const ImaginationSetup& setup, world::WorldState* state) 
   state->objects.insert(state->objects.begin(), objects.begin(), objects.end());
 }
 
-/// Of what the atoms put on the tray.
-void RefuseOffTray(const ImaginationSetup& setup, const std::vector<base::Atom>& atoms,
-                   const StartState& start) {
+/// What the atoms put on the tray: the first stays in its place, the others have room beside it.
+void ArrangeTray(const ImaginationSetup& setup, const std::vector<base::Atom>& atoms,
+                 StartState* start) {
+  std::set<std::string> on_tray;
   for (const base::Atom& atom : atoms) {
     const bool is_on_tray = base::ToLower(atom.predicate) == "on" && atom.arguments.size() == 2 &&
                             base::ToLower(atom.arguments[1]) == translation::kTrayArea;
-    const world::ObjectState* object = is_on_tray ? start.world.Find(atom.arguments[0]) : nullptr;
-    if (object != nullptr) simulation::RefuseOffTray(*setup.scene, start.robot, *object);
+    if (is_on_tray) on_tray.insert(base::ToLower(atom.arguments[0]));
+  }
+  std::vector<world::ObjectState> placed;
+  for (world::ObjectState& object : start->world.objects) {
+    if (on_tray.count(base::ToLower(object.name)) == 0) continue;
+    if (!placed.empty()) MoveToRoom(*setup.scene, start->robot, placed, &object);
+    simulation::RefuseOffTray(*setup.scene, start->robot, object);
+    placed.push_back(object);
   }
 }
 
@@ -103,9 +127,11 @@ StartState StartOnTray(const ImaginationSetup& setup, const geometry::Pose2& X_M
   start.robot.joints = setup.scene->robot.profile.joints;
   for (std::size_t i = 0; i < objects.size(); ++i) {
     const double y = i == 0 ? 0.0 : (i == 1 ? -kSlotDistance : kSlotDistance);
-    start.world.objects.push_back(MakeObject(
+    world::ObjectState object = MakeObject(
         setup, objects[i],
-        geometry::Lift(start.robot.X_MB) * setup.scene->X_BO * geometry::Lift({0.0, y, 0.0})));
+        geometry::Lift(start.robot.X_MB) * setup.scene->X_BO * geometry::Lift({0.0, y, 0.0}));
+    if (i > 0) MoveToRoom(*setup.scene, start.robot, start.world.objects, &object);
+    start.world.objects.push_back(std::move(object));
     simulation::RefuseOffTray(*setup.scene, start.robot, start.world.objects.back());
   }
   return start;
@@ -128,7 +154,7 @@ StartState MakeStartState(const ImaginationSetup& setup, const std::vector<base:
   }
   const translation::GeometricState state = translation::StateOf(setup.translator, nullptr, atoms);
   StartState start{state.world, state.robot};
-  RefuseOffTray(setup, atoms, start);
+  ArrangeTray(setup, atoms, &start);
   for (const PutObject& object : put) Put(setup, object, &start.world);
   AddInitialObjects(setup, &start.world);
   return start;

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 #include <optional>
 
 #include "hires/base/error.h"
@@ -102,7 +103,104 @@ double Beside(const TrayPlate& plate, const Vector2d& p_B) {
       object.name, robot.profile.tray_link, robot.model.name, tilt, kLevel));
 }
 
+geometry::Aabb BoundsAt(const world::ObjectModel& model, const Pose3& X_BO) {
+  geometry::Aabb bounds;
+  for (const geometry::Collision& shape : model.collisions)
+    bounds.Include(geometry::BoundsOf(shape.shape, X_BO * shape.X_BS));
+  return bounds;
+}
+
+/// What is asked of places on the tray, in the base frame.
+class TrayRoom {
+ public:
+  TrayRoom(const Scene& scene, const robot::RobotState& start, const world::ObjectState& object,
+           const std::vector<world::ObjectState>& others)
+      : shapes_B_(FrozenShapes(scene.robot, robot::PostureOf(scene.robot, start.joints))),
+        model_(scene.world.ModelOf(object)) {
+    for (const world::ObjectState& other : others) {
+      const auto model = scene.world.ModelOf(other);
+      others_.push_back({model, geometry::Lift(start.X_MB).Inverse() * other.X_MO});
+    }
+  }
+
+  bool IsFree(const Pose3& X_BO) const {
+    return StandsOn(shapes_B_, model_->collisions, X_BO) &&
+           !FindInside(model_->collisions, X_BO, shapes_B_, {}) &&
+           std::none_of(others_.begin(), others_.end(), [&](const Placed& other) {
+             return Overlap(model_->collisions, X_BO, other.model->collisions, other.X_BO);
+           });
+  }
+
+  /// It is all over the plate, and free also if it stood 1 cm farther to any side.
+  bool IsRoomy(const Pose3& X_BO, const geometry::Aabb& plate_B) const {
+    const geometry::Aabb bounds = BoundsAt(*model_, X_BO);
+    if ((bounds.lower - plate_B.lower).head<2>().minCoeff() < 0.0) return false;
+    if ((plate_B.upper - bounds.upper).head<2>().minCoeff() < 0.0) return false;
+    if (!IsFree(X_BO)) return false;
+    for (int i = 0; i < kSides; ++i) {
+      const double side = 2.0 * M_PI * i / kSides;
+      if (!IsFree(Shifted(X_BO, kTried * Vector2d(std::cos(side), std::sin(side))))) return false;
+    }
+    return true;
+  }
+
+  static Pose3 Shifted(Pose3 X_BO, const Vector2d& way_B) {
+    X_BO.translation.head<2>() += way_B;
+    return X_BO;
+  }
+
+ private:
+  static constexpr int kSides = 8;
+  // [m] 1 cm of room to all sides, as tried at so many, and what counts as no overlap yet.
+  static constexpr double kTried = 0.0115 + kStartSlack;
+  struct Placed {
+    std::shared_ptr<const world::ObjectModel> model;
+    Pose3 X_BO;
+  };
+  std::vector<geometry::Collision> shapes_B_;
+  std::shared_ptr<const world::ObjectModel> model_;
+  std::vector<Placed> others_;
+};
+
+/// Ways from a place to others, all over a plate, the nearest first.
+std::vector<Vector2d> WaysOver(const geometry::Aabb& plate_B, const Vector2d& p_B) {
+  constexpr double kStep = 0.01;  // [m]
+  constexpr int kMost = 40;       // to a side
+  const Vector2d size = (plate_B.upper - plate_B.lower).head<2>();
+  const double step = std::max(kStep, size.maxCoeff() / kMost);
+  const Eigen::AlignedBox2d box(plate_B.lower.head<2>().eval(), plate_B.upper.head<2>().eval());
+  std::vector<Vector2d> ways;
+  for (int i = -kMost; i <= kMost; ++i) {
+    for (int j = -kMost; j <= kMost; ++j) {
+      const Vector2d way(i * step, j * step);
+      if (box.contains((p_B + way).eval())) ways.push_back(way);
+    }
+  }
+  std::stable_sort(ways.begin(), ways.end(), [](const Vector2d& a, const Vector2d& b) {
+    return a.squaredNorm() < b.squaredNorm() - 1e-12;
+  });
+  return ways;
+}
+
 }  // namespace
+
+std::optional<Pose3> FreeOnTray(const Scene& scene, const robot::RobotState& start,
+                                const world::ObjectState& object,
+                                const std::vector<world::ObjectState>& others) {
+  const auto plate = PlateOf(scene.robot, robot::PostureOf(scene.robot, start.joints));
+  if (!plate) return std::nullopt;
+  const Pose3 X_MB = geometry::Lift(start.X_MB);
+  const Pose3 X_BO = X_MB.Inverse() * object.X_MO;
+  const TrayRoom room(scene, start, object, others);
+  if (room.IsFree(X_BO)) return object.X_MO;
+  Pose3 X_BMiddle = X_BO;
+  X_BMiddle.translation.head<2>() = scene.X_BO.translation.head<2>();
+  for (const Vector2d& way : WaysOver(plate->bounds_B, X_BMiddle.translation.head<2>())) {
+    const Pose3 X_BPlace = TrayRoom::Shifted(X_BMiddle, way);
+    if (room.IsRoomy(X_BPlace, plate->bounds_B)) return X_MB * X_BPlace;
+  }
+  return std::nullopt;
+}
 
 void RefuseOffTray(const Scene& scene, const robot::RobotState& start,
                    const world::ObjectState& object) {
@@ -112,10 +210,7 @@ void RefuseOffTray(const Scene& scene, const robot::RobotState& start,
   if (!plate) return;
   const auto model = scene.world.ModelOf(object);
   const Pose3 X_BO = geometry::Lift(start.X_MB).Inverse() * object.X_MO;
-  geometry::Aabb bounds;
-  for (const geometry::Collision& shape : model->collisions) {
-    bounds.Include(geometry::BoundsOf(shape.shape, X_BO * shape.X_BS));
-  }
+  const geometry::Aabb bounds = BoundsAt(*model, X_BO);
   const Vector2d centre = 0.5 * (bounds.lower + bounds.upper).head<2>();
   const double beside =
       std::min(Beside(*plate, centre), Beside(*plate, X_BO.translation.head<2>()));
@@ -132,10 +227,13 @@ void RefuseOffTray(const Scene& scene, const robot::RobotState& start,
                                 ? fmt::format("{:.3f} m beside the tray's plate", beside)
                                 : fmt::format("{:.3f} m {} the top of the tray's plate",
                                               std::abs(above), above > 0.0 ? "above" : "below");
-  throw base::ConfigError(
-      fmt::format("object '{}' would begin {}: {}; give a place in the middle of its top, or leave "
-                  "object_on_tray out, which is that",
-                  object.name, where, PlateText(robot, *plate, X_BO.translation)));
+  const bool is_beside_others = (X_BO.translation - scene.X_BO.translation).head<2>().norm() > 1e-6;
+  const char* remedy = is_beside_others
+                           ? "beside the others is no room for it, name fewer or smaller things"
+                           : "give a place in the middle of its top, or leave object_on_tray out, "
+                             "which is that";
+  throw base::ConfigError(fmt::format("object '{}' would begin {}: {}; {}", object.name, where,
+                                      PlateText(robot, *plate, X_BO.translation), remedy));
 }
 
 Variation WithFreeStart(Variation variation, const Scene& scene, const robot::RobotState& start) {

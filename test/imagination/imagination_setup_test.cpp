@@ -587,6 +587,31 @@ TEST(StartStateTest, RefusesALoadWhosePlaceIsBesideTheTray) {
   }
 }
 
+// The place of the second thing, 0.13 m to the right of the first, lies beside the plate.
+TEST(StartStateTest, ASecondThingOnTheTrayBeginsWhereThereIsRoom) {
+  YAML::Node robot = YAML::LoadFile(Root() + "/config/robots/cart.yaml");
+  robot["urdf"] = Root() + "/urdf/cart.urdf";
+  robot["object_on_tray"]["xyz"][1] = -0.12;
+  SceneFile file;
+  file.root["robot"] = file.folder.Write("robot.yaml", YAML::Dump(robot));
+  const ImaginationSetup setup = file.Load();
+  const base::Atom here{"RobotAt", {"door"}};
+  for (const StartState& start :
+       {MakeStartState(setup, "door", {"mill1", "Mill2"}),
+        MakeStartState(
+            setup, {here, {"On", {"Mill2", "trayArea1"}}, {"On", {"mill1", "trayArea1"}}}, {})}) {
+    const geometry::Pose3 X_TM = (geometry::Lift(start.robot.X_MB) * setup.scene->X_BO).Inverse();
+    ASSERT_THAT(start.world.objects, SizeIs(2));
+    const Eigen::Vector3d first = (X_TM * start.world.objects[0].X_MO).translation;
+    const Eigen::Vector3d second = (X_TM * start.world.objects[1].X_MO).translation;
+    EXPECT_LT(first.norm(), 1e-9);
+    EXPECT_NEAR(second.z(), 0.0, 1e-9);
+    EXPECT_GT(second.norm(), 2.0 * 0.037) << "beside the first";
+    EXPECT_LT(second.norm(), 2.0 * 0.037 + 0.03) << "and no farther than need be";
+    EXPECT_NO_THROW(CheckSetup(MakeRolloutSetup(setup, start, 42), {"move_base", {"window"}}));
+  }
+}
+
 TEST(StartStateTest, ReadsAtoms) {
   const StartState start = MakeStartState(Hall(), {{"HasArmPosture", {"leftArm1", "tucked"}},
                                                    {"On", {"mill1", "trayArea1"}},

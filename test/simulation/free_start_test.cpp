@@ -157,5 +157,95 @@ TEST(RefuseOffTrayTest, OtherPartsOfTheRobotCarryToo) {
   EXPECT_EQ(WhyOff(*scene, "mill"), "");
 }
 
+/// Mills of some radii one after the other on a plate with a rim of 0.08 m on all four sides.
+struct Load {
+  Load(double length, double width) : robot(test_support::TrayRobot()) {
+    robot::Link& tray = robot.model.links[1];
+    tray.joint->X_PJ = {{0.6, 0.0, kHigh}, Eigen::Quaterniond::Identity()};
+    tray.collisions = {
+        test_support::Shape("plate", geometry::Box{{length, width, 0.02}}, {0.0, 0.0, -0.01})};
+    for (const double side : {1.0, -1.0}) {
+      tray.collisions.push_back(test_support::Shape("rim", geometry::Box{{0.01, width, 0.08}},
+                                                    {side * (0.5 * length - 0.005), 0.0, 0.04}));
+      tray.collisions.push_back(test_support::Shape("rim", geometry::Box{{length, 0.01, 0.08}},
+                                                    {0.0, side * (0.5 * width - 0.005), 0.04}));
+    }
+    robot.profile.X_TO = {};
+  }
+
+  void Add(double radius) {
+    test_support::AddModel(&room,
+                           test_support::Mill(fmt::format("mill{}", radii.size()), 0.2, radius));
+    radii.push_back(radius);
+  }
+
+  /// Their places from that of the first, as far as there is room; each of the later ones wants to
+  /// stand 0.13 m to the side.
+  std::vector<Eigen::Vector3d> Places() const {
+    const auto scene = MakeScene(room, robot);
+    const robot::RobotState start = test_support::StandingAt({2.0, 2.0, 0.7});
+    const geometry::Pose3 X_MT = geometry::Lift(start.X_MB) * scene->X_BO;
+    std::vector<world::ObjectState> objects;
+    std::vector<Eigen::Vector3d> places;
+    for (std::size_t i = 0; i < radii.size(); ++i) {
+      world::ObjectState object;
+      object.name = object.model = fmt::format("mill{}", i);
+      const double y = i == 0 ? 0.0 : i == 1 ? -0.13 : 0.13;
+      object.X_MO = X_MT * geometry::Lift({0.0, y, 0.0});
+      if (i > 0) {
+        const auto X_MO = FreeOnTray(*scene, start, object, objects);
+        if (!X_MO) break;
+        object.X_MO = *X_MO;
+      }
+      objects.push_back(object);
+      places.push_back((X_MT.Inverse() * object.X_MO).translation);
+    }
+    return places;
+  }
+
+  robot::Robot robot;
+  world::World room{test_support::Room()};
+  std::vector<double> radii;
+};
+
+TEST(FreeOnTrayTest, ItsOwnPlaceIsKeptWhereItIsFree) {
+  Load load(0.3, 0.5);
+  for (int i = 0; i < 3; ++i) load.Add(0.04);
+  const std::vector<Eigen::Vector3d> places = load.Places();
+  ASSERT_EQ(places.size(), 3U);
+  EXPECT_NEAR(places[1].y(), -0.13, 1e-9);
+  EXPECT_NEAR(places[2].y(), 0.13, 1e-9);
+}
+
+TEST(FreeOnTrayTest, OnAnyTrayThingsStandClearOfRimAndEachOtherOrAreLeftOut) {
+  base::Rng rng(17);
+  int num_moved = 0, num_left_out = 0;
+  for (int round = 0; round < hires::test_support::Rounds(60); ++round) {
+    const double length = rng.Uniform(0.15, 0.5), width = rng.Uniform(0.15, 0.5);
+    Load load(length, width);
+    for (int i = 0; i < 3; ++i) load.Add(rng.Uniform(0.02, 0.06));
+    const std::vector<Eigen::Vector3d> places = load.Places();
+    SCOPED_TRACE(fmt::format("round {}: {:.3f} x {:.3f} m", round, length, width));
+    for (std::size_t i = 1; i < places.size(); ++i) {
+      const double radius = load.radii[i];
+      const bool is_moved = std::abs(places[i].x()) > 1e-9;
+      num_moved += is_moved ? 1 : 0;
+      const double slack = is_moved ? -0.009 : 0.006;  // [m] what begins in something is freed
+      EXPECT_LT(std::abs(places[i].x()) + radius, 0.5 * length - 0.01 + slack);
+      EXPECT_LT(std::abs(places[i].y()) + radius, 0.5 * width - 0.01 + slack);
+      for (std::size_t j = 0; j < i; ++j)
+        EXPECT_GT((places[i] - places[j]).norm(), radius + load.radii[j] - slack);
+    }
+    num_left_out += places.size() < 3 ? 1 : 0;
+    // A cell of the square round the largest thing and its room, on each side of the middle.
+    const double cell = 2.0 * (*std::max_element(load.radii.begin(), load.radii.end()) + 0.02);
+    const bool has_room =
+        std::min(length, width) - 0.02 > cell && std::max(length, width) - 0.02 > 3.0 * cell;
+    EXPECT_TRUE(!has_room || places.size() == 3U);
+  }
+  EXPECT_GT(num_moved, 0);
+  EXPECT_GT(num_left_out, 0);
+}
+
 }  // namespace
 }  // namespace hires::simulation::free_start_test

@@ -1,5 +1,8 @@
 #pragma once
 
+#include <optional>
+#include <vector>
+
 #include "hires/robot/observation.h"
 #include "hires/simulation/scene.h"
 #include "hires/simulation/variation.h"
@@ -19,5 +22,12 @@ Variation WithFreeStart(Variation variation, const Scene& scene, const robot::Ro
 /// wanted.
 void RefuseOffTray(const Scene& scene, const robot::RobotState& start,
                    const world::ObjectState& object);
+
+/// Where a thing begins on the tray beside others: at its own place, if it stands there in neither
+/// the robot nor them; else, as it is turned, at the place nearest to object_on_tray that has all
+/// of it over the plate and 1 cm of room. Nothing where there is none, or no plate.
+std::optional<geometry::Pose3> FreeOnTray(const Scene& scene, const robot::RobotState& start,
+                                          const world::ObjectState& object,
+                                          const std::vector<world::ObjectState>& others);
 
 }  // namespace hires::simulation
