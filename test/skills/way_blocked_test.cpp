@@ -13,6 +13,7 @@
 #include "hires/base/rng.h"
 #include "hires/geometry/angles.h"
 #include "hires/world/occupancy_grid.h"
+#include "skills/laser_robot.h"
 #include "skills/point_robot.h"
 #include "support/rounds.h"
 #include "support/scenes.h"
@@ -185,6 +186,20 @@ robot::Robot LongRobot(double length, double width) {
   return robot;
 }
 
+robot::Robot LongRobotWithLaser(double length, double width) {
+  robot::Robot robot = LongRobot(length, width);
+  const robot::Robot with_laser = test_support::RobotWithLaser({0.3, 0.0, 0.0});
+  robot.model = with_laser.model;
+  robot.profile.laser_link = with_laser.profile.laser_link;
+  return robot;
+}
+
+MoveBaseParams WithObstacleLayer() {
+  MoveBaseParams params;
+  params.obstacle_layer.emplace();
+  return params;
+}
+
 TEST(WayBlockedTest, AMapOfAWorldHasRoomForTheLongestBaseAtItsAreas) {
   base::Rng rng(31);
   for (int i = 0; i < Rounds(24); ++i) {
@@ -279,6 +294,11 @@ TEST(WayBlockedTest, AGoalWithRoomForTheBaseNowhereWithinItsToleranceIsToldAtOnc
       ++num_free;
       EXPECT_EQ(ToString(status.failure), "");
     }
+    const auto by_laser = std::make_shared<const DrivingContext>(
+        MakeDrivingContext(world, LongRobotWithLaser(length, 0.6), WithObstacleLayer()));
+    const Status seen = FirstWord(by_laser, X_MT * Pose2{-4.0 * side, 0.0, 0.0}, X_MT);
+    EXPECT_TRUE(depth > 0.35 || ToString(seen.failure).empty())
+        << "the map may err by as much again";
     if (std::abs(depth) < kCell) continue;
     EXPECT_EQ(WhyGoalIsTight(*context, X_MT) != "", depth > 0.0) << "within its tolerance or not";
   }

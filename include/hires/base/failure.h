@@ -32,7 +32,7 @@ enum class FailureCode : std::uint16_t {
   kNoPath = 101,             ///< an arm, or the base, finds no way
   kUnreachable = 102,        ///< an arm does not reach so far, or the goal lies in a wall
   kStartBlocked = 103,       ///< it touches something before it begins
-  kGoalBlocked = 104,        ///< something stands at the goal
+  kGoalBlocked = 104,        ///< something stands at the goal, or too near to it
   kGoalMissed = 105,         ///< it stopped too far from the goal
   kNoValidTrajectory = 106,  ///< the local planner sees no velocity that is safe
   kOscillating = 107,        ///< it goes to and fro

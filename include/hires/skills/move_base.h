@@ -115,6 +115,7 @@ class MoveBase : public Skill {
   geometry::Twist2 LookAround(const robot::Observation& observation);
   void Begin(const robot::Observation& observation);
   std::optional<Status> Plan(const robot::Observation& observation);
+  std::optional<std::string> WhyNoRoomAtGoal(const robot::Observation& observation) const;
   navigation::PathStatus FindPath(const navigation::Costmap& costmap, const geometry::Pose2& X_MB,
                                   double margin = 0.0);
   navigation::PathResult FindWayThatIsWide(const navigation::Costmap& costmap,

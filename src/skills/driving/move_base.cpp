@@ -96,12 +96,12 @@ std::optional<navigation::Costmap> WithRoom(const navigation::Costmap& map, cons
   return map.WithRoomFor(footprint_M);
 }
 
-/// Whether a robot may stand somewhere within the tolerance of a goal and touch nothing.
+/// Whether a robot may stand somewhere near a goal and touch nothing.
+/// @param xy  [m] how near. @param yaw  [rad] likewise.
 bool HasRoomAt(const navigation::Costmap& map, const navigation::Footprint& footprint,
-               const Pose2& X_MGoal, const navigation::DwaParams& tolerance) {
+               const Pose2& X_MGoal, double xy, double yaw) {
   constexpr double kYawStep = 0.0425;  // [rad]
   const double step = 0.5 * map.resolution();
-  const double xy = tolerance.xy_goal_tolerance, yaw = tolerance.yaw_goal_tolerance;
   if (map.FootprintCost(footprint, X_MGoal) < navigation::kLethalCost) return true;
   for (double turned = -yaw; turned <= yaw; turned += kYawStep) {
     for (double x = -xy; x <= xy; x += step) {
@@ -387,6 +387,19 @@ bool MoveBase::PlanWithMargin(const robot::Observation& observation) {
   return false;
 }
 
+/// Of a base that would touch something wherever it stood within the goal's tolerance. A car is
+/// asked whether it fits its goal when its way is planned. Where a laser shows what is in the way,
+/// the map may lie beside that by as much again.
+std::optional<std::string> MoveBase::WhyNoRoomAtGoal(const robot::Observation& observation) const {
+  if (car_) return std::nullopt;
+  const navigation::DwaParams& local = context_->params.local;
+  const double xy = (sensed_ ? 2.0 : 1.0) * local.xy_goal_tolerance;
+  const auto here = WithRoom(*costmap_, observation.X_MB, Body());
+  const navigation::Costmap& map = here ? *here : *costmap_;
+  if (HasRoomAt(map, Body(), X_MGoal_, xy, local.yaw_goal_tolerance)) return std::nullopt;
+  return WhyBlocked(*context_, map, "goal", X_MGoal_);
+}
+
 /// Round what the laser sees, if that leaves a way: where map and marks lie beside each other, for
 /// a localisation errs, narrow places are closed that are not.
 std::optional<Status> MoveBase::Plan(const robot::Observation& observation) {
@@ -395,11 +408,8 @@ std::optional<Status> MoveBase::Plan(const robot::Observation& observation) {
   const double slack = context_->params.local.xy_goal_tolerance;
   if (const auto why = WhyOffMap(*costmap_, footprint_, "goal", X_MGoal_, slack))
     return Failed({base::FailureCode::kGoalBlocked, {}, *why});
-  const auto here = WithRoom(*costmap_, observation.X_MB, Body());
-  const navigation::Costmap& around = here ? *here : *costmap_;
-  if (!car_ && !HasRoomAt(around, Body(), X_MGoal_, context_->params.local))
-    return Failed(
-        {base::FailureCode::kGoalBlocked, {}, WhyBlocked(*context_, around, "goal", X_MGoal_)});
+  if (const auto why = WhyNoRoomAtGoal(observation))
+    return Failed({base::FailureCode::kGoalBlocked, {}, *why});
   if (sensed_ &&
       FindPath(MapWithMarks(observation), observation.X_MB) == navigation::PathStatus::kFound) {
     return std::nullopt;
