@@ -100,6 +100,18 @@ TEST(RolloutTest, PutBackItMayFallAgain) {
   EXPECT_GT(falls_put_back, falls_once);
 }
 
+TEST(RolloutTest, WhoHasNoLaserIsToldThatWhatHeKnockedOverIsInNoMap) {
+  RolloutSetup setup = RoomRollouts(Room(), "mill");
+  world::ObjectState post;
+  post.name = "post";
+  post.model = "tower";
+  post.X_MO = geometry::Lift({3.0, 2.0, 0.0});
+  setup.world_state.objects.push_back(post);
+  const RolloutResult result = Play(setup, kSlow);
+  EXPECT_EQ(result.failure, base::Failure(Code::kKnockedOver, {"post"}));
+  EXPECT_THAT(result.failure.detail, AllOf(HasSubstr("'post' is loose"), HasSubstr("laser_link")));
+}
+
 TEST(RolloutTest, EveryLoadThatFallsCounts) {
   RolloutSetup setup = RoomRollouts(Room(), "tower");
   setup.world_state.objects.push_back(

@@ -60,6 +60,7 @@ class Player {
         floor_(*setup.scene, setup.world_state.objects),
         X_BOstart_(NominalStarts(setup)),
         drives_(skills::SpecOf(*setup.skills, action).driving != actions::Driving::kNone),
+        plans_(skills::SpecOf(*setup.skills, action).driving == actions::Driving::kRoundObstacles),
         driving_(setup.skills->driving) {
     simulator_.Remember(KnownAtStart(setup, variation, simulator_));
   }
@@ -174,6 +175,20 @@ class Player {
     }
   }
 
+  /// A robot without a laser drives round nothing loose.
+  void SayWhatIsInNoMap(base::Failure* failure) const {
+    const simulation::Scene& scene = simulator_.scene();
+    const bool sees = !scene.robot.profile.laser_link.empty();
+    if (failure->code != Code::kKnockedOver || sees || !plans_) return;
+    const std::string& name = failure->subjects.front();
+    const std::string source = world::SourceOf(name, scene.world);
+    failure->detail = fmt::format(
+        "'{}'{} is loose, so it is not in the map by which drives are planned, and the robot has "
+        "no laser that would see it: name its laser (laser_link), or let the world have the thing "
+        "as <static>",
+        name, source.empty() ? "" : " (" + source + ")");
+  }
+
   base::Failure Collision() const {
     const simulation::RobotContact& contact = *simulator_.contact();
     return {Code::kRobotCollision, {contact.robot_part, contact.obstacle}, ToString(contact)};
@@ -223,6 +238,7 @@ class Player {
       if (result_.action_finished) result_.failure = {Code::kKnockedOver, down_before_};
       result_.falls = static_cast<int>(down_before_.size());
     }
+    SayWhatIsInNoMap(&result_.failure);
     result_.outcome = !result_.failure                          ? Outcome::kSucceeded
                       : result_.failure.code == Code::kTimedOut ? Outcome::kTimedOut
                                                                 : Outcome::kFailed;
@@ -254,7 +270,7 @@ class Player {
   RobotSimulator simulator_;
   FloorObjects floor_;
   const std::vector<geometry::Pose3> X_BOstart_;
-  const bool drives_;
+  const bool drives_, plans_;  // its way round what is in the map
   const std::shared_ptr<const skills::DrivingContext> driving_;
   ProgressWatch progress_;
   double start_{0.0}, next_cycle_{0.0};  // [s]
