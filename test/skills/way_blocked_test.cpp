@@ -306,6 +306,20 @@ TEST(WayBlockedTest, AGoalWithRoomForTheBaseNowhereWithinItsToleranceIsToldAtOnc
   EXPECT_GT(num_free, 0);
 }
 
+// Its ends swing by more than the corridor has to spare for a tenth of the yaw's tolerance.
+TEST(WayBlockedTest, OfALongBaseAllHeadingsWithinTheToleranceAreTried) {
+  world::World hall;
+  hall.statics = {Block("north", {60.0, 0.2, 2.0}, {0.0, 0.51, 1.0}),
+                  Block("south", {60.0, 0.2, 2.0}, {0.0, -0.51, 1.0})};
+  const auto context = std::make_shared<const DrivingContext>(
+      MakeDrivingContext(hall, LongRobot(6.0, 0.6), MoveBaseParams{}));
+  base::Rng rng(43);
+  for (int i = 0; i < Rounds(24); ++i) {
+    const Pose2 to{rng.Uniform(5.0, 7.0), 0.0, rng.Uniform(-0.16, 0.16)};
+    EXPECT_EQ(ToString(FirstWord(context, {0.0, 0.0, 0.0}, to).failure), "") << "yaw " << to.yaw;
+  }
+}
+
 TEST(WayBlockedTest, ABaseThatFindsNoMotionSaysWhatIsNextToIt) {
   world::World cage;
   const double gap = 0.06;  // [m] on all sides of the base
@@ -323,6 +337,24 @@ TEST(WayBlockedTest, ABaseThatFindsNoMotionSaysWhatIsNextToIt) {
                     HasSubstr("m from it")));
   EXPECT_EQ(WhyNoMotion(*context, *context->costmap, context->footprint, {4.0, 4.0, 0.0}), "")
       << "nothing is near";
+}
+
+TEST(WayBlockedTest, ABaseWhoseWayIsBlockedSaysWhereAndByWhat) {
+  world::World hall;
+  hall.statics = {Block("crate", {0.5, 0.5, 1.0}, {2.0, 0.0, 0.5}),
+                  Block("end", {0.2, 0.2, 2.0}, {8.0, 8.0, 1.0}),
+                  Block("end", {0.2, 0.2, 2.0}, {-8.0, -8.0, 1.0})};
+  hall.sources["crate"] = "hall.world:2";
+  const auto context = std::make_shared<const DrivingContext>(
+      MakeDrivingContext(hall, TrayRobot(), MoveBaseParams{}));
+  std::vector<Pose2> path;
+  for (double x = 0.0; x < 4.0; x += 0.05) path.push_back({x, 0.0, 0.0});
+  const auto said = [&](const Pose2& from) {
+    return WhyNoWay(*context, *context->costmap, context->footprint, from, path);
+  };
+  EXPECT_THAT(said({1.0, 0.2, 0.0}),
+              AllOf(HasSubstr("its way is blocked at x 1."), HasSubstr("'crate' (hall.world:2)")));
+  EXPECT_EQ(said({3.5, 0.0, 0.0}), "") << "it is past that";
 }
 
 TEST(WayBlockedTest, AGoalAtWhichOnlyTheHeadingIsWrongSaysWhatReachesIntoWhat) {

@@ -100,10 +100,12 @@ std::optional<navigation::Costmap> WithRoom(const navigation::Costmap& map, cons
 /// @param xy  [m] how near. @param yaw  [rad] likewise.
 bool HasRoomAt(const navigation::Costmap& map, const navigation::Footprint& footprint,
                const Pose2& X_MGoal, double xy, double yaw) {
-  constexpr double kYawStep = 0.0425;  // [rad]
   const double step = 0.5 * map.resolution();
   if (map.FootprintCost(footprint, X_MGoal) < navigation::kLethalCost) return true;
-  for (double turned = -yaw; turned <= yaw; turned += kYawStep) {
+  const double reach = geometry::CircumscribedRadius(footprint.outline);
+  const int yaw_steps = std::max(1, static_cast<int>(std::ceil(yaw * reach / step)));
+  for (int i = -yaw_steps; i <= yaw_steps; ++i) {
+    const double turned = yaw * i / yaw_steps;
     for (double x = -xy; x <= xy; x += step) {
       for (double y = -xy; y <= xy; y += step) {
         const Pose2 X_MB{X_MGoal.x + x, X_MGoal.y + y, X_MGoal.yaw + turned};
@@ -252,8 +254,10 @@ geometry::Polygon FootprintOf(const DrivingContext& context,
 }
 
 std::string WhyGoalIsTight(const DrivingContext& context, const Pose2& X_MGoal) {
+  constexpr double kMargin = 0.02;  // [m] that local control keeps where it can
   const navigation::Costmap& map = *context.costmap;
-  if (map.FootprintCost(context.body, X_MGoal) < navigation::kLethalCost) return "";
+  const navigation::Footprint body = Padded(context.body, kMargin);
+  if (map.FootprintCost(body, X_MGoal) < navigation::kLethalCost) return "";
   return WhyBlocked(context, map, "goal", X_MGoal);
 }
 
@@ -487,6 +491,7 @@ Status MoveBase::Stuck(base::FailureCode code, const robot::Observation& observa
   if (why.empty() && to_goal <= kAtGoal) why = WhyGoalIsTight(*context_, X_MGoal_);
   if (code == base::FailureCode::kNoValidTrajectory) {
     if (why.empty()) why = WhyNoTurn(*context_, *now_, footprint_, observation.X_MB);
+    if (why.empty() && path_) why = WhyNoWay(*context_, *now_, Body(), observation.X_MB, *path_);
     if (why.empty()) why = WhyNoMotion(*context_, *now_, footprint_, observation.X_MB);
   }
   return Failed({code, {}, why});

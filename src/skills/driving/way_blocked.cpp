@@ -755,9 +755,26 @@ std::string WhyNoTurn(const DrivingContext& context, const Costmap& costmap,
                      X_MB.y, base::Join(sides, ", "));
 }
 
+std::string WhyNoWay(const DrivingContext& context, const Costmap& costmap,
+                     const navigation::Footprint& footprint, const Pose2& X_MB,
+                     const std::vector<Pose2>& path) {
+  const auto nearer = [&](const Pose2& a, const Pose2& b) {
+    return (a.position() - X_MB.position()).norm() < (b.position() - X_MB.position()).norm();
+  };
+  for (auto pose = std::min_element(path.begin(), path.end(), nearer); pose != path.end(); ++pose) {
+    if (costmap.FootprintCost(footprint, *pose) < navigation::kLethalCost) continue;
+    const auto touched = NearestTakenTo(costmap, geometry::Transformed(*pose, footprint.outline),
+                                        costmap.resolution());
+    return fmt::format(
+        "its way is blocked at x {:.2f} m, y {:.2f} m by {}", pose->x, pose->y,
+        touched ? Explainer(context, costmap).WhatIsAt(touched->middle) : "the map's end");
+  }
+  return "";
+}
+
 std::string WhyNoMotion(const DrivingContext& context, const Costmap& costmap,
                         const geometry::Polygon& footprint, const Pose2& X_MB) {
-  constexpr double kNear = 0.3;  // [m] What is farther from a base that stands is not in its way.
+  constexpr double kNear = 0.1;  // [m] What is farther from a base that stands is not in its way.
   const auto next = NearestTakenTo(costmap, geometry::Transformed(X_MB, footprint), kNear);
   if (!next) return "";
   return fmt::format(

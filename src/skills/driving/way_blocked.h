@@ -3,6 +3,7 @@
 
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "hires/geometry/polygon.h"
 #include "hires/navigation/costmap.h"
@@ -54,6 +55,12 @@ std::string WhyStuck(const navigation::Costmap& costmap, const geometry::Polygon
 /// much it can, and what it touches then. Else empty.
 std::string WhyNoTurn(const DrivingContext& context, const navigation::Costmap& costmap,
                       const geometry::Polygon& footprint, const geometry::Pose2& X_MB);
+
+/// Of a base that came no further on a path: where it would touch something on the rest of it, and
+/// what. Else empty.
+std::string WhyNoWay(const DrivingContext& context, const navigation::Costmap& costmap,
+                     const navigation::Footprint& footprint, const geometry::Pose2& X_MB,
+                     const std::vector<geometry::Pose2>& path);
 
 /// Of a base that found no motion where it stands: what is next to it, and how near. Else empty.
 std::string WhyNoMotion(const DrivingContext& context, const navigation::Costmap& costmap,
