@@ -110,6 +110,8 @@ TEST(RolloutTest, WhoHasNoLaserIsToldThatWhatHeKnockedOverIsInNoMap) {
   const RolloutResult result = Play(setup, kSlow);
   EXPECT_EQ(result.failure, base::Failure(Code::kKnockedOver, {"post"}));
   EXPECT_THAT(result.failure.detail, AllOf(HasSubstr("'post' is loose"), HasSubstr("laser_link")));
+  EXPECT_THAT(result.failure.detail, ::testing::Not(HasSubstr("static")))
+      << "no world's file has it";
 }
 
 TEST(RolloutTest, EveryLoadThatFallsCounts) {

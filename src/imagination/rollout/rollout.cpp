@@ -7,6 +7,7 @@
 
 #include "hires/base/error.h"
 #include "hires/base/log.h"
+#include "hires/base/text.h"
 #include "hires/simulation/robot_simulator.h"
 #include "imagination/purpose.h"
 #include "imagination/rollout/floor_objects.h"
@@ -180,13 +181,19 @@ class Player {
     const simulation::Scene& scene = simulator_.scene();
     const bool sees = !scene.robot.profile.laser_link.empty();
     if (failure->code != Code::kKnockedOver || sees || !plans_) return;
-    const std::string& name = failure->subjects.front();
-    const std::string source = world::SourceOf(name, scene.world);
+    std::vector<std::string> things;
+    bool is_any_of_world = false;
+    for (const std::string& name : failure->subjects) {
+      const std::string source = world::SourceOf(name, scene.world);
+      things.push_back(fmt::format("'{}'{}", name, source.empty() ? "" : " (" + source + ")"));
+      is_any_of_world |= !source.empty();
+    }
+    const bool is_one = things.size() == 1;
     failure->detail = fmt::format(
-        "'{}'{} is loose, so it is not in the map by which drives are planned, and the robot has "
-        "no laser that would see it: name its laser (laser_link), or let the world have the thing "
-        "as <static>",
-        name, source.empty() ? "" : " (" + source + ")");
+        "{} {} loose, so not in the map by which drives are planned, and the robot has no laser "
+        "that would see {}: name its laser (laser_link){}",
+        base::Join(things, ", "), is_one ? "is" : "are", is_one ? "it" : "them",
+        is_any_of_world ? ", or let the world have what is in the way as <static>" : "");
   }
 
   base::Failure Collision() const {
