@@ -69,7 +69,7 @@ void MoveToRoom(const simulation::Scene& scene, const robot::RobotState& robot,
   object->X_MO = *X_MO;
   const geometry::Pose3 X_MTray = geometry::Lift(robot.X_MB) * scene.X_BO;
   const Eigen::Vector3d p_T = (X_MTray.Inverse() * *X_MO).translation;
-  base::Log(base::LogLevel::kInfo,
+  base::Log(base::LogLevel::kWarn,
             fmt::format("object={} note=\"{:g} m beside the middle of the tray it has no room: it "
                         "begins at x {:.2f} m, y {:.2f} m of it\"",
                         object->name, kSlotDistance, p_T.x(), p_T.y()));

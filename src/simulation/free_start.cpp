@@ -124,11 +124,25 @@ class TrayRoom {
   }
 
   bool IsFree(const Pose3& X_BO) const {
-    return StandsOn(shapes_B_, model_->collisions, X_BO) &&
-           !FindInside(model_->collisions, X_BO, shapes_B_, {}) &&
-           std::none_of(others_.begin(), others_.end(), [&](const Placed& other) {
-             return Overlap(model_->collisions, X_BO, other.model->collisions, other.X_BO);
-           });
+    return std::none_of(others_.begin(), others_.end(),
+                        [&](const Placed& other) {
+                          return Overlap(model_->collisions, X_BO, other.model->collisions,
+                                         other.X_BO);
+                        }) &&
+           StandsOn(shapes_B_, model_->collisions, X_BO) &&
+           !FindInside(model_->collisions, X_BO, shapes_B_, {});
+  }
+
+  /// Whether the robot carries this share of its half widths to all sides of its middle.
+  bool IsCarried(const Pose3& X_BO, double share) const {
+    const geometry::Aabb bounds = BoundsAt(*model_, X_BO);
+    const Vector2d half = 0.5 * (bounds.upper - bounds.lower).head<2>();
+    for (int i = 0; i < kSides; ++i) {
+      if (!StandsOn(shapes_B_, model_->collisions,
+                    Shifted(X_BO, share * half.cwiseProduct(Side(i)))))
+        return false;
+    }
+    return true;
   }
 
   /// It is all over the plate, and free also if it stood 1 cm farther to any side.
@@ -136,12 +150,15 @@ class TrayRoom {
     const geometry::Aabb bounds = BoundsAt(*model_, X_BO);
     if ((bounds.lower - plate_B.lower).head<2>().minCoeff() < 0.0) return false;
     if ((plate_B.upper - bounds.upper).head<2>().minCoeff() < 0.0) return false;
-    if (!IsFree(X_BO)) return false;
+    if (!IsFree(X_BO) || !IsCarried(X_BO, kWhole)) return false;
     for (int i = 0; i < kSides; ++i) {
-      const double side = 2.0 * M_PI * i / kSides;
-      if (!IsFree(Shifted(X_BO, kTried * Vector2d(std::cos(side), std::sin(side))))) return false;
+      if (!IsFree(Shifted(X_BO, kTried * Side(i)))) return false;
     }
     return true;
+  }
+
+  static Vector2d Side(int i) {
+    return {std::cos(2.0 * M_PI * i / kSides), std::sin(2.0 * M_PI * i / kSides)};
   }
 
   static Pose3 Shifted(Pose3 X_BO, const Vector2d& way_B) {
@@ -151,6 +168,7 @@ class TrayRoom {
 
  private:
   static constexpr int kSides = 8;
+  static constexpr double kWhole = 1.09;  // of its half widths: between two sides, too
   // [m] 1 cm of room to all sides, as tried at so many, and what counts as no overlap yet.
   static constexpr double kTried = 0.0115 + kStartSlack;
   struct Placed {
@@ -187,19 +205,21 @@ std::vector<Vector2d> WaysOver(const geometry::Aabb& plate_B, const Vector2d& p_
 std::optional<Pose3> FreeOnTray(const Scene& scene, const robot::RobotState& start,
                                 const world::ObjectState& object,
                                 const std::vector<world::ObjectState>& others) {
+  constexpr double kEnoughCarried = 0.5;  // of its half widths, so that it does not tip by itself
   const auto plate = PlateOf(scene.robot, robot::PostureOf(scene.robot, start.joints));
   if (!plate) return std::nullopt;
   const Pose3 X_MB = geometry::Lift(start.X_MB);
   const Pose3 X_BO = X_MB.Inverse() * object.X_MO;
   const TrayRoom room(scene, start, object, others);
-  if (room.IsFree(X_BO)) return object.X_MO;
+  const bool is_free = room.IsFree(X_BO);
+  if (is_free && room.IsCarried(X_BO, kEnoughCarried)) return object.X_MO;
   Pose3 X_BMiddle = X_BO;
   X_BMiddle.translation.head<2>() = scene.X_BO.translation.head<2>();
   for (const Vector2d& way : WaysOver(plate->bounds_B, X_BMiddle.translation.head<2>())) {
     const Pose3 X_BPlace = TrayRoom::Shifted(X_BMiddle, way);
     if (room.IsRoomy(X_BPlace, plate->bounds_B)) return X_MB * X_BPlace;
   }
-  return std::nullopt;
+  return is_free ? std::make_optional(object.X_MO) : std::nullopt;
 }
 
 void RefuseOffTray(const Scene& scene, const robot::RobotState& start,

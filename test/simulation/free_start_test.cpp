@@ -159,12 +159,14 @@ TEST(RefuseOffTrayTest, OtherPartsOfTheRobotCarryToo) {
 
 /// Mills of some radii one after the other on a plate with a rim of 0.08 m on all four sides.
 struct Load {
-  Load(double length, double width) : robot(test_support::TrayRobot()) {
+  Load(double length, double width, double yaw = 0.0, bool has_rim = true)
+      : robot(test_support::TrayRobot()) {
     robot::Link& tray = robot.model.links[1];
-    tray.joint->X_PJ = {{0.6, 0.0, kHigh}, Eigen::Quaterniond::Identity()};
+    tray.joint->X_PJ = {{0.6, 0.0, kHigh}, geometry::RotationFromRpy(0.0, 0.0, yaw)};
     tray.collisions = {
         test_support::Shape("plate", geometry::Box{{length, width, 0.02}}, {0.0, 0.0, -0.01})};
     for (const double side : {1.0, -1.0}) {
+      if (!has_rim) break;
       tray.collisions.push_back(test_support::Shape("rim", geometry::Box{{0.01, width, 0.08}},
                                                     {side * (0.5 * length - 0.005), 0.0, 0.04}));
       tray.collisions.push_back(test_support::Shape("rim", geometry::Box{{length, 0.01, 0.08}},
@@ -215,6 +217,29 @@ TEST(FreeOnTrayTest, ItsOwnPlaceIsKeptWhereItIsFree) {
   ASSERT_EQ(places.size(), 3U);
   EXPECT_NEAR(places[1].y(), -0.13, 1e-9);
   EXPECT_NEAR(places[2].y(), 0.13, 1e-9);
+}
+
+// They would begin beside the plate, or with more than a half over its edge, and fall by
+// themselves.
+TEST(FreeOnTrayTest, OnATurnedPlateWithoutARimAllOfThemIsCarried) {
+  base::Rng rng(18);
+  int num_moved = 0;
+  for (int round = 0; round < hires::test_support::Rounds(40); ++round) {
+    const double length = rng.Uniform(0.4, 0.6), width = rng.Uniform(0.16, 0.3);
+    Load load(length, width, rng.Uniform(-3.0, 3.0), false);
+    for (int i = 0; i < 3; ++i) load.Add(rng.Uniform(0.02, 0.05));
+    const std::vector<Eigen::Vector3d> places = load.Places();
+    SCOPED_TRACE(fmt::format("round {}: {:.3f} x {:.3f} m", round, length, width));
+    ASSERT_EQ(places.size(), 3U);
+    for (std::size_t i = 1; i < 3; ++i) {
+      const bool is_own = std::abs(std::abs(places[i].y()) - 0.13) < 1e-9;
+      const double carried = (is_own ? 0.46 : 0.99) * load.radii[i];
+      num_moved += is_own ? 0 : 1;
+      EXPECT_LT(std::abs(places[i].x()) + carried, 0.5 * length);
+      EXPECT_LT(std::abs(places[i].y()) + carried, 0.5 * width);
+    }
+  }
+  EXPECT_GT(num_moved, 0);
 }
 
 TEST(FreeOnTrayTest, OnAnyTrayThingsStandClearOfRimAndEachOtherOrAreLeftOut) {
