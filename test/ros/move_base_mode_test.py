@@ -17,7 +17,7 @@ sys.path.insert(0, os.path.join(HERE, 'support'))
 
 from failures import text_of  # noqa: E402
 from move_base_system import FAST, ROOT, SLOW, MoveBaseSystem, config_text  # noqa: E402
-from action_goal import ActionGoal  # noqa: E402
+from action_goal import ActionGoal, require_server  # noqa: E402
 from diagnostics import wait_for_guard, wait_for_middle_layer  # noqa: E402
 from robot_system import SKILL_LIMIT  # noqa: E402
 from ros_processes import LIMIT, Processes, executable, wait_until  # noqa: E402
@@ -143,11 +143,8 @@ class MoveBaseModeTest(unittest.TestCase):
         self.middle_layer = self.keep(self.processes.start(
             [executable('middle_layer'), '_config:=' + self.config, '_guard:=true',
              '_navigation:=move_base'], self.main))
-        client = self.client
-        self.wait_for(lambda: client.pub_goal.get_num_connections() > 0 and
-                      client.pub_cancel.get_num_connections() > 0 and
-                      client.result_sub.get_num_connections() > 0 and
-                      self.base.hears_who_asks(), 'the middle layer')
+        require_server(self.client, self.output)
+        self.wait_for(self.base.hears_who_asks, 'the middle layer')
         wait_for_middle_layer(self.rospy)
         wait_for_guard(self.rospy)
 

@@ -15,6 +15,7 @@ sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), 'sup
 
 from diagnostics import diagnostics  # noqa: E402
 from failures import text_of  # noqa: E402
+from listeners import listeners  # noqa: E402
 from robot_system import RobotSystem  # noqa: E402
 from ros_processes import executable, wait_until  # noqa: E402
 from test_run import long_case, run_test  # noqa: E402
@@ -193,7 +194,8 @@ class ToppleMonitorTest(unittest.TestCase):
 
     def wait_for_goals_to_be_heard(self):
         """By the node, beside the middle layer."""
-        wait_until(lambda: self.system.client.pub_goal.get_num_connections() == 2, 'two listeners to goals')
+        wait_until(lambda: listeners(self.system.client.pub_goal) >= {'/middle_layer', '/topple_monitor'},
+                   'two listeners to goals')
 
     def drive(self, area):
         result = self.system.execute('move_base_param', area, 'fast').result()

@@ -7,16 +7,15 @@ rospy's SimpleActionClient takes no notice of what comes before its `send_goal` 
 that is quick enough is never seen.
 """
 
-import socket
 import threading
 import xmlrpc.client
 
+from listeners import listeners
 from ros_processes import LIMIT, wait_until
 
 
 def require_server(client, output):
-    """Waits until the server that runs now hears this client and is heard by it. rospy also counts its
-    connections to a server that was killed, until it writes to them; so the server is asked.
+    """Waits until the server that runs now hears this client and is heard by it.
     @param output  called for what to say if there is none."""
     try:
         wait_until(lambda: _is_served(client), 'the server of %s' % client.ns)
@@ -28,33 +27,16 @@ def _is_served(client):
     import rosgraph
     import rospy
     heard = {sub.resolved_name for sub in (client.status_sub, client.result_sub, client.feedback_sub)}
-    told = {pub.resolved_name for pub in (client.pub_goal, client.pub_cancel)}
     master = rosgraph.Master(rospy.get_name())
     try:
-        publishers = dict(master.getSystemState()[0])
-        servers = publishers.get(client.result_sub.resolved_name, [])
+        servers = dict(master.getSystemState()[0]).get(client.result_sub.resolved_name, [])
         connections = [connection for server in servers for connection in
                        xmlrpc.client.ServerProxy(master.lookupNode(server)).getBusInfo('/test')[2]]
     except (OSError, rosgraph.MasterError):
         return False  # one that is gone
     reached = {c[4] for c in connections if c[2] == 'o' and c[1] == rospy.get_name()}
-    listened = {c[4] for c in connections if c[2] == 'i' and c[1] == rospy.get_node_uri()}
-    return (heard <= reached and told <= listened and
-            all(_reaches_somebody(pub) for pub in (client.pub_goal, client.pub_cancel)))
-
-
-def _reaches_somebody(publisher):
-    """Whether a connection of it is made and not closed: the server lists one as soon as it asks for it,
-    and what is published before it is made is lost."""
-    for connection in list(publisher.impl.connections):
-        try:
-            if connection.socket.recv(1, socket.MSG_PEEK | socket.MSG_DONTWAIT):
-                return True
-        except BlockingIOError:
-            return True  # nothing to read, as it should be
-        except (OSError, AttributeError):
-            pass  # closed meanwhile
-    return False
+    return heard <= reached and all(listeners(pub).intersection(servers)
+                                    for pub in (client.pub_goal, client.pub_cancel))
 
 
 class ActionGoal:

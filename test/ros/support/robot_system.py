@@ -11,9 +11,9 @@ One test program has one master (a rospy node cannot change it); the processes m
 import os
 import threading
 
-from action_goal import ActionGoal
+from action_goal import ActionGoal, require_server
 from diagnostics import wait_for_middle_layer
-from ros_processes import LIMIT, Processes, executable, wait_until
+from ros_processes import LIMIT, Processes, executable
 
 SKILL_LIMIT = 300.0  # [s] by the wall's clock: it ends a broken test, and measures nothing
 
@@ -120,7 +120,7 @@ class RobotSystem:
 
     def require_server(self):
         """Time may stand still, so that rospy's own waiting would never end."""
-        wait_until(self._has_server, 'the middle layer, which says: ' + self.output())
+        require_server(self.client, self.output)
 
     def require_ready(self):
         """In lockstep an action is refused until the robot waits for its controllers' answers."""
@@ -129,15 +129,6 @@ class RobotSystem:
             wait_for_middle_layer(self.rospy)
         except AssertionError as error:
             raise AssertionError('%s\n%s' % (error, self.output()))
-
-    def _has_server(self):
-        # Goal and cancel have a listener, and status, feedback and result come from it.
-        client = self.client
-        return (client.pub_goal.get_num_connections() > 0 and
-                client.pub_cancel.get_num_connections() > 0 and
-                client.result_sub.get_num_connections() > 0 and
-                client.feedback_sub.get_num_connections() > 0 and
-                client.status_sub.get_num_connections() > 0)
 
     def output(self):
         return '\n'.join(process.output() for process in (self.robot, self.middle_layer)

@@ -22,7 +22,7 @@ import yaml
 HERE = os.path.dirname(os.path.abspath(__file__))
 sys.path.insert(0, os.path.abspath(os.path.join(HERE, '..', '..', 'ros', 'support')))
 
-from action_goal import Task  # noqa: E402
+from action_goal import Task, require_server  # noqa: E402
 from blackboard_access import BlackboardAccess  # noqa: E402
 from ros_processes import (  # noqa: E402
     Processes, executable, free_port_block, processes_with, wait_until)
@@ -344,16 +344,7 @@ class ClosedLoop(BlackboardAccess):
 
     def require_server(self):
         """Time may not have begun, so that rospy's own waiting would never end."""
-        client = self.client
-
-        def is_there():
-            return (client.pub_goal.get_num_connections() > 0 and
-                    client.pub_cancel.get_num_connections() > 0 and
-                    client.result_sub.get_num_connections() > 0 and
-                    client.feedback_sub.get_num_connections() > 0 and
-                    client.status_sub.get_num_connections() > 0)
-        wait_until(is_there, 'the execution monitor, which says: ' +
-                   self.nodes['execution_monitor'].output())
+        require_server(self.client, self.nodes['execution_monitor'].output)
 
     def achieve(self, task, imagination='', on_feedback=None):
         goal = self.msg.AchieveGoal(task=task, imagination=imagination)
