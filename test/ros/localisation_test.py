@@ -193,6 +193,23 @@ class LocalisationTest(HearsEchoes, unittest.TestCase):
             self.assertTrue(0.0 < covariance[index] < 0.02, covariance)
         self.assertEqual(covariance[1], covariance[6])
 
+    def test_a_robot_that_nobody_told_where_it_is_says_nothing_until_it_knows(self):
+        """The place that the configuration names is nobody's belief: a drive would begin there."""
+        node = Node(self)
+        self.tick()
+        self.maps.publish(map_message())
+        node.process.wait_for('map=used')
+        self.tick()
+        self.scans.publish(self.scan())
+        self.assertEqual(self.say(node, lambda v: v['message'].startswith('lost'))['level'], 2)
+        node.process.wait_for('place=lost')
+        self.assertFalse(node.transforms or node.poses)
+        self.told.publish(self.pose(self.robot.START))
+        node.process.wait_for('pose=set')
+        pose = self.step(node)[0]
+        self.assertEqual(len(node.transforms), 1)
+        self.assertLess(math.dist(pose[:2], self.robot.pose[:2]), 0.15)
+
     def test_a_robot_that_stands_keeps_its_transform_and_is_looked_at_again_when_asked(self):
         from std_srvs.srv import Empty
         node = self.begun()

@@ -28,7 +28,8 @@ namespace hires_ros {
 /// interface of AMCL. With a map of a file it is the map server, too. Scans are used in the order
 /// of their stamps, each once tf says where odometry and laser were then, so the same messages give
 /// the same poses, bit for bit. What cannot be used is dropped with the reason, and the poses go on
-/// without it.
+/// without it. Where nobody said where the robot begins, and its scans do not fit the place that
+/// the configuration names, nothing is told until it is found: that place is nobody's belief.
 class LocalisationNode {
  public:
   LocalisationNode(const LocalisationNodeParams& params, ros::NodeHandle* nh);
@@ -73,6 +74,7 @@ class LocalisationNode {
   PoseKeeper keeper_;
   bool is_updated_{false};  // by a scan since it began
   bool is_lost_{false};     // as was told last
+  bool is_told_;            // whether somebody said where it begins, or its scans agreed with it
   Eigen::Matrix3d told_covariance_{Eigen::Matrix3d::Zero()};
   double begun_;  // [s] steady
 

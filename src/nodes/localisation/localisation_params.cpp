@@ -17,10 +17,13 @@ namespace {
 
 using hires::base::Between;
 
+const std::vector<std::string> kPoseKeys{"initial_pose_x", "initial_pose_y", "initial_pose_a"};
+
 /// Private parameters that win over the file's keys.
 std::vector<std::string> InitialKeys() {
-  return {"initial_pose_x", "initial_pose_y", "initial_pose_a",
-          "initial_cov_xx", "initial_cov_yy", "initial_cov_aa"};
+  std::vector<std::string> keys{"initial_cov_xx", "initial_cov_yy", "initial_cov_aa"};
+  keys.insert(keys.end(), kPoseKeys.begin(), kPoseKeys.end());
+  return keys;
 }
 
 std::vector<std::string> KnownKeys() {
@@ -71,6 +74,9 @@ LocalisationNodeParams LoadLocalisationNodeParams() {
   params.seed = static_cast<std::uint64_t>(seed);
   params.map = MapOfFile(PrivateText("map_file").value_or(""));
   OverrideStart(&params.config.filter);
+  params.is_start_told =
+      std::any_of(kPoseKeys.begin(), kPoseKeys.end(),
+                  [](const std::string& key) { return PrivateNumber(key).has_value(); });
   params.kept = ReadKeptPlace();
   return params;
 }

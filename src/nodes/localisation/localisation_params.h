@@ -15,7 +15,8 @@ struct LocalisationNodeParams {
   hires::control::RobotNames names;                ///< with base_scan
   std::uint64_t seed{1};                           ///< of all chance
   std::optional<hires::world::OccupancyGrid> map;  ///< of ~map_file; nothing: it comes by topic
-  std::optional<KeptPlace> kept;                   ///< by a process of this name before
+  bool is_start_told{false};      ///< by a private parameter, not by the file alone
+  std::optional<KeptPlace> kept;  ///< by a process of this name before
 };
 
 /// From the private parameters config, names, seed, map_file; initial_pose_x, _y, _a and
