@@ -70,7 +70,7 @@ class MiddleLayerFreeTest(unittest.TestCase):
         self.addCleanup(gate.close)
         self.begin('%s:=%s_gated' % (topic, topic))
         goal = self.system.execute('move_base', 'preManipulationAreaEastCounter1')
-        self.system.wait_for_truth(lambda s: speed(s) > 0.3, 'the robot to be fast')
+        self.system.wait_during(goal, lambda s: speed(s) > 0.3, 'the robot to be fast')
         gate.is_open = False
         result = goal.result()
         self.assertEqual((result.code, text_of(result.failure).split(':')[0]),

@@ -123,7 +123,7 @@ class MiddleLayerGuardTest(unittest.TestCase):
     def drive(self):
         """On the way, and fast."""
         goal = self.system.execute('move_base', FAR)
-        self.system.wait_for_truth(lambda s: speed(s) > 0.3, 'the robot to be fast')
+        self.system.wait_during(goal, lambda s: speed(s) > 0.3, 'the robot to be fast')
         return goal
 
     def require_stand(self):

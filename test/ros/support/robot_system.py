@@ -83,6 +83,14 @@ class RobotSystem:
                 raise AssertionError('waited in vain for ' + what)
             return self.truth[-1][1]
 
+    def wait_during(self, goal, condition, what):
+        """Likewise, of a goal that is still on its way then."""
+        state = self.wait_for_truth(lambda state: condition(state) or goal.is_done(), what)
+        if goal.is_done():
+            raise AssertionError('waited for %s; the goal ended before, with %s\n%s' % (
+                what, goal.result(), self.output()))
+        return state
+
     def wait_for_standstill(self):
         """While the world is held: the stamp [ns] at which it stands."""
         def is_repeated():
