@@ -11,7 +11,7 @@ import threading
 import xmlrpc.client
 
 from listeners import listeners
-from ros_processes import LIMIT, wait_until
+from ros_processes import LIMIT, BoundedTransport, wait_until
 
 
 def require_server(client, output):
@@ -31,12 +31,17 @@ def _is_served(client):
     try:
         servers = dict(master.getSystemState()[0]).get(client.result_sub.resolved_name, [])
         connections = [connection for server in servers for connection in
-                       xmlrpc.client.ServerProxy(master.lookupNode(server)).getBusInfo('/test')[2]]
-    except (OSError, rosgraph.MasterError):
-        return False  # one that is gone
+                       _bus_info(master.lookupNode(server))]
+    except (OSError, xmlrpc.client.Error, xmlrpc.client.http.client.HTTPException, rosgraph.MasterError):
+        return False  # one that is gone, whose port may be somebody else's
     reached = {c[4] for c in connections if c[2] == 'o' and c[1] == rospy.get_name()}
     return heard <= reached and all(listeners(pub).intersection(servers)
                                     for pub in (client.pub_goal, client.pub_cancel))
+
+
+def _bus_info(uri):
+    with xmlrpc.client.ServerProxy(uri, transport=BoundedTransport()) as node:
+        return node.getBusInfo('/test')[2]
 
 
 class ActionGoal:
