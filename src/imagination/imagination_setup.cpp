@@ -436,6 +436,7 @@ ImaginationSetup LoadImaginationSetup(const SetupConfig& scene) {
   setup.standing = config.standing;
   setup.translator.standing = config.standing;
   setup.translator.classify = config.classify;
+  setup.translator.slot_distance = config.manipulation.place.slot_distance;
   return setup;
 }
 

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <optional>
 #include <set>
 
 #include "hires/base/error.h"
@@ -14,8 +15,6 @@
 
 namespace hires::imagination {
 namespace {
-
-constexpr double kSlotDistance = 0.13;  // [m] between the places on the tray
 
 geometry::Pose3 AreaPose(const ImaginationSetup& setup, const std::string& area) {
   if (const auto X_MArea = setup.scene->world.FindFrame(area)) return *X_MArea;
@@ -61,18 +60,31 @@ void RefuseLoad(const ImaginationSetup& setup, const std::vector<std::string>& o
       fmt::format("'{}' cannot be carried: {}", on_tray.front(), robot::NoTrayText(robot)));
 }
 
-/// Where a tray is too small, or has walls, for its own place beside the others.
-void MoveToRoom(const simulation::Scene& scene, const robot::RobotState& robot,
-                const std::vector<world::ObjectState>& others, world::ObjectState* object) {
-  const auto X_MO = simulation::FreeOnTray(scene, robot, *object, others);
-  if (!X_MO || X_MO->translation == object->X_MO.translation) return;
-  object->X_MO = *X_MO;
+/// At its own place, or where there is room beside the others.
+/// @throws base::ConfigError as simulation::RefuseOffTray.
+void PutOnTray(const ImaginationSetup& setup, const robot::RobotState& robot,
+               const std::vector<world::ObjectState>& others, world::ObjectState* object) {
+  const simulation::Scene& scene = *setup.scene;
+  std::optional<simulation::TrayPlace> place;
+  if (!others.empty()) place = simulation::FreeOnTray(scene, robot, *object, others);
+  const bool is_moved = place && place->X_MO.translation != object->X_MO.translation;
+  if (is_moved) object->X_MO = place->X_MO;
+  simulation::RefuseOffTray(scene, robot, *object);
+  if (place && !place->is_carried) {
+    base::Log(
+        base::LogLevel::kWarn,
+        fmt::format("object={} note=\"beside the others the tray has no room that carries it: "
+                    "it begins far over an edge, and may fall by itself; name fewer or "
+                    "smaller things\"",
+                    object->name));
+  }
+  if (!is_moved) return;
   const geometry::Pose3 X_MTray = geometry::Lift(robot.X_MB) * scene.X_BO;
-  const Eigen::Vector3d p_T = (X_MTray.Inverse() * *X_MO).translation;
+  const Eigen::Vector3d p_T = (X_MTray.Inverse() * object->X_MO).translation;
   base::Log(base::LogLevel::kWarn,
             fmt::format("object={} note=\"{:g} m beside the middle of the tray it has no room: it "
                         "begins at x {:.2f} m, y {:.2f} m of it\"",
-                        object->name, kSlotDistance, p_T.x(), p_T.y()));
+                        object->name, setup.translator.slot_distance, p_T.x(), p_T.y()));
 }
 
 void RefuseOtherStorey(const ImaginationSetup& setup, const std::string& area) {
@@ -102,8 +114,7 @@ void ArrangeTray(const ImaginationSetup& setup, const std::vector<base::Atom>& a
   std::vector<world::ObjectState> placed;
   for (world::ObjectState& object : start->world.objects) {
     if (on_tray.count(base::ToLower(object.name)) == 0) continue;
-    if (!placed.empty()) MoveToRoom(*setup.scene, start->robot, placed, &object);
-    simulation::RefuseOffTray(*setup.scene, start->robot, object);
+    PutOnTray(setup, start->robot, placed, &object);
     placed.push_back(object);
   }
 }
@@ -125,14 +136,14 @@ StartState StartOnTray(const ImaginationSetup& setup, const geometry::Pose2& X_M
   StartState start;
   start.robot.X_MB = X_MB;
   start.robot.joints = setup.scene->robot.profile.joints;
+  const double beside = setup.translator.slot_distance;
   for (std::size_t i = 0; i < objects.size(); ++i) {
-    const double y = i == 0 ? 0.0 : (i == 1 ? -kSlotDistance : kSlotDistance);
+    const double y = i == 0 ? 0.0 : (i == 1 ? -beside : beside);
     world::ObjectState object = MakeObject(
         setup, objects[i],
         geometry::Lift(start.robot.X_MB) * setup.scene->X_BO * geometry::Lift({0.0, y, 0.0}));
-    if (i > 0) MoveToRoom(*setup.scene, start.robot, start.world.objects, &object);
+    PutOnTray(setup, start.robot, start.world.objects, &object);
     start.world.objects.push_back(std::move(object));
-    simulation::RefuseOffTray(*setup.scene, start.robot, start.world.objects.back());
   }
   return start;
 }

@@ -202,9 +202,9 @@ std::vector<Vector2d> WaysOver(const geometry::Aabb& plate_B, const Vector2d& p_
 
 }  // namespace
 
-std::optional<Pose3> FreeOnTray(const Scene& scene, const robot::RobotState& start,
-                                const world::ObjectState& object,
-                                const std::vector<world::ObjectState>& others) {
+std::optional<TrayPlace> FreeOnTray(const Scene& scene, const robot::RobotState& start,
+                                    const world::ObjectState& object,
+                                    const std::vector<world::ObjectState>& others) {
   constexpr double kEnoughCarried = 0.5;  // of its half widths, so that it does not tip by itself
   const auto plate = PlateOf(scene.robot, robot::PostureOf(scene.robot, start.joints));
   if (!plate) return std::nullopt;
@@ -212,14 +212,14 @@ std::optional<Pose3> FreeOnTray(const Scene& scene, const robot::RobotState& sta
   const Pose3 X_BO = X_MB.Inverse() * object.X_MO;
   const TrayRoom room(scene, start, object, others);
   const bool is_free = room.IsFree(X_BO);
-  if (is_free && room.IsCarried(X_BO, kEnoughCarried)) return object.X_MO;
+  if (is_free && room.IsCarried(X_BO, kEnoughCarried)) return TrayPlace{object.X_MO};
   Pose3 X_BMiddle = X_BO;
   X_BMiddle.translation.head<2>() = scene.X_BO.translation.head<2>();
   for (const Vector2d& way : WaysOver(plate->bounds_B, X_BMiddle.translation.head<2>())) {
     const Pose3 X_BPlace = TrayRoom::Shifted(X_BMiddle, way);
-    if (room.IsRoomy(X_BPlace, plate->bounds_B)) return X_MB * X_BPlace;
+    if (room.IsRoomy(X_BPlace, plate->bounds_B)) return TrayPlace{X_MB * X_BPlace};
   }
-  return is_free ? std::make_optional(object.X_MO) : std::nullopt;
+  return is_free ? std::make_optional(TrayPlace{object.X_MO, false}) : std::nullopt;
 }
 
 void RefuseOffTray(const Scene& scene, const robot::RobotState& start,

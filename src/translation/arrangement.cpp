@@ -28,9 +28,8 @@ constexpr double kGraspHeight = 0.4;  // of an object's height, from its foot
 // [m] from the tool up to the top of what hangs from the hand: as deep as a cup of 0.08 m fits
 // between the open fingers of the PR2, which stand like a V.
 constexpr double kHangingDepth = 0.028;
-constexpr double kSlotDistance = 0.13;  // [m] between slots of the tray
-constexpr double kClearance = 0.01;     // [m] between objects that are put side by side
-constexpr double kStep = 0.02;          // [m] of the search for a free spot
+constexpr double kClearance = 0.01;  // [m] between objects that are put side by side
+constexpr double kStep = 0.02;       // [m] of the search for a free spot
 
 /// [m] from an object's origin to the farthest point of its outline from above.
 double RadiusOf(const world::ObjectModel& model) {
@@ -333,7 +332,7 @@ class Arrangement {
     const world::ObjectModel& model = ModelOf(object);
     const Pose3 X_MMiddle =
         body_.X_ML(context_.robot->profile.tray_link) * context_.robot->profile.X_TO;
-    for (const double y : {0.0, -kSlotDistance, kSlotDistance}) {
+    for (const double y : {0.0, -context_.slot_distance, context_.slot_distance}) {
       const Pose3 X_MO = X_MMiddle * geometry::Lift({0.0, y, 0.0});
       if (!IsClear(model, X_MO.translation)) continue;
       Add(object, X_MO);

@@ -500,6 +500,24 @@ TEST(ImaginationSetupTest, ABareUrdfWillDo) {
   EXPECT_EQ(setup.scene->robot.profile.tray_link, "tray_link");
 }
 
+/// Skills put things on the tray, too.
+TEST(StartStateTest, PlacesOnTheTrayAreAsFarApartAsThoseOfSkills) {
+  SceneFile file;
+  file.root["manipulation"]["place"]["slot_distance"] = 0.1;
+  const ImaginationSetup setup = file.Load();
+  const geometry::Pose3 X_BO = setup.scene->X_BO;
+  for (const StartState& start : {MakeStartState(setup, "door", {"mill1", "Mill2"}),
+                                  MakeStartState(setup, {{"RobotAt", {"door"}},
+                                                         {"On", {"mill1", "trayArea1"}},
+                                                         {"On", {"mill2", "trayArea1"}}})}) {
+    ASSERT_THAT(start.world.objects, SizeIs(2));
+    const Eigen::Vector3d p_O =
+        ((geometry::Lift(start.robot.X_MB) * X_BO).Inverse() * start.world.objects[1].X_MO)
+            .translation;
+    EXPECT_LT((p_O - Eigen::Vector3d(0.0, -0.1, 0.0)).norm(), 1e-9);
+  }
+}
+
 TEST(StartStateTest, PutsTheRobotAtTheAreaAndItsLoadInSlots) {
   const StartState start = MakeStartState(Hall(), "door", {"mill1", "Mill2", "mill"});
   EXPECT_EQ(start.robot.X_MB.x, 0.0);

@@ -183,7 +183,8 @@ struct Load {
 
   /// Their places from that of the first, as far as there is room; each of the later ones wants to
   /// stand 0.13 m to the side.
-  std::vector<Eigen::Vector3d> Places() const {
+  /// @param are_carried  of the later ones; or null
+  std::vector<Eigen::Vector3d> Places(std::vector<bool>* are_carried = nullptr) const {
     const auto scene = MakeScene(room, robot);
     const robot::RobotState start = test_support::StandingAt({2.0, 2.0, 0.7});
     const geometry::Pose3 X_MT = geometry::Lift(start.X_MB) * scene->X_BO;
@@ -195,9 +196,10 @@ struct Load {
       const double y = i == 0 ? 0.0 : i == 1 ? -0.13 : 0.13;
       object.X_MO = X_MT * geometry::Lift({0.0, y, 0.0});
       if (i > 0) {
-        const auto X_MO = FreeOnTray(*scene, start, object, objects);
-        if (!X_MO) break;
-        object.X_MO = *X_MO;
+        const auto place = FreeOnTray(*scene, start, object, objects);
+        if (!place) break;
+        object.X_MO = place->X_MO;
+        if (are_carried) are_carried->push_back(place->is_carried);
       }
       objects.push_back(object);
       places.push_back((X_MT.Inverse() * object.X_MO).translation);
@@ -217,6 +219,21 @@ TEST(FreeOnTrayTest, ItsOwnPlaceIsKeptWhereItIsFree) {
   ASSERT_EQ(places.size(), 3U);
   EXPECT_NEAR(places[1].y(), -0.13, 1e-9);
   EXPECT_NEAR(places[2].y(), 0.13, 1e-9);
+}
+
+TEST(FreeOnTrayTest, WhatNoPlaceCarriesIsTold) {
+  Load load(0.12, 0.28, 0.0, false);
+  for (int i = 0; i < 2; ++i) load.Add(0.05);
+  std::vector<bool> are_carried;
+  const std::vector<Eigen::Vector3d> places = load.Places(&are_carried);
+  ASSERT_EQ(places.size(), 2U);
+  EXPECT_NEAR(places[1].y(), -0.13, 1e-9);
+  EXPECT_EQ(are_carried, std::vector<bool>{false});
+  Load smaller(0.12, 0.28, 0.0, false);
+  for (int i = 0; i < 2; ++i) smaller.Add(0.03);
+  are_carried.clear();
+  smaller.Places(&are_carried);
+  EXPECT_EQ(are_carried, std::vector<bool>{true});
 }
 
 // They would begin beside the plate, or with more than a half over its edge, and fall by

@@ -32,8 +32,8 @@ struct PutObject {
 void RefuseFixed(const ImaginationSetup& setup, const std::string& object);
 
 /// The robot with objects on its tray, and nothing else: the first in the middle, the next ones to
-/// its right and left, 0.13 m apart (the slots of the tray pick and place action), or where there
-/// is room (simulation::FreeOnTray).
+/// its right and left (the slots of the tray pick and place action, slot_distance apart), or where
+/// there is room (simulation::FreeOnTray).
 /// @throws base::ConfigError for an unknown object, more than three objects, a robot without a
 /// tray, and as simulation::RefuseOffTray.
 StartState StartOnTray(const ImaginationSetup& setup, const geometry::Pose2& X_MB,

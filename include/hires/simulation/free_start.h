@@ -23,12 +23,19 @@ Variation WithFreeStart(Variation variation, const Scene& scene, const robot::Ro
 void RefuseOffTray(const Scene& scene, const robot::RobotState& start,
                    const world::ObjectState& object);
 
-/// Where a thing begins on the tray beside others: at its own place, if it is free there and no
-/// more than half of it hangs over an edge; else, as it is turned, at the place nearest to
-/// object_on_tray that carries all of it and has 1 cm of room; else at its own place, if that is
-/// free. Nothing where there is none, or no plate.
-std::optional<geometry::Pose3> FreeOnTray(const Scene& scene, const robot::RobotState& start,
-                                          const world::ObjectState& object,
-                                          const std::vector<world::ObjectState>& others);
+struct TrayPlace {
+  geometry::Pose3 X_MO;
+  /// False: the plate ends nearer to its middle than half of its own half width, so that it may
+  /// fall by itself.
+  bool is_carried{true};
+};
+
+/// Where a thing begins on the tray beside others: at its own place, if it is free there and
+/// carried; else, as it is turned, at the place nearest to object_on_tray that carries all of it
+/// and has 1 cm of room; else at its own place, if that is free. Nothing where there is none, or no
+/// plate.
+std::optional<TrayPlace> FreeOnTray(const Scene& scene, const robot::RobotState& start,
+                                    const world::ObjectState& object,
+                                    const std::vector<world::ObjectState>& others);
 
 }  // namespace hires::simulation

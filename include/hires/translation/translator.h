@@ -26,6 +26,7 @@ struct TranslatorContext {
   Areas areas;
   world::StandingCriterion standing;  ///< what leans too far is on no area
   ClassifyParams classify;            ///< when a symbol holds
+  double slot_distance{0.13};         ///< [m] between places on the tray
 
   /// The catalogue's, or that of its kin: an instance that differs from one of the catalogue in its
   /// number only (mug3 is what mug1 is), or a model by its own name, with or without a number.
@@ -83,7 +84,7 @@ struct GeometricState {
 /// gripper's gap is the object's width. On(object, area): where it was seen if that is on the area;
 /// else on its middle, or beside it by as little as keeps it clear of the objects that are there.
 /// On(object, trayarea1): where it was seen on the tray; else on the next free slot (middle, right,
-/// left: 0.13 m), or where there is room. Objects that only fluents know stay where they were seen
+/// left), or where there is room. Objects that only fluents know stay where they were seen
 /// in the map; upright ones from 0.08 m below to 0.03 m above the top of furniture stand on it;
 /// those whose last place was a part of the robot, which no atom confirms, are left out. Objects
 /// that were seen in each other are parted, by the shortest way, where that moves none by more than
