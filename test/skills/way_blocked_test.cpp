@@ -266,6 +266,7 @@ TEST(WayBlockedTest, ABaseThatCannotTurnSaysWhatItTouches) {
 
 // Where the round that fits into a base is clear of a wall, but the base is not.
 TEST(WayBlockedTest, AGoalWithRoomForTheBaseNowhereWithinItsToleranceIsToldAtOnce) {
+  const double out = M_SQRT2 * kCell;  // [m] by which cells of a slanted wall reach out of it
   base::Rng rng(41);
   int num_blocked = 0, num_free = 0;
   for (int i = 0; i < Rounds(48); ++i) {
@@ -297,9 +298,9 @@ TEST(WayBlockedTest, AGoalWithRoomForTheBaseNowhereWithinItsToleranceIsToldAtOnc
     const auto by_laser = std::make_shared<const DrivingContext>(
         MakeDrivingContext(world, LongRobotWithLaser(length, 0.6), WithObstacleLayer()));
     const Status seen = FirstWord(by_laser, X_MT * Pose2{-4.0 * side, 0.0, 0.0}, X_MT);
-    EXPECT_TRUE(depth > 0.35 || ToString(seen.failure).empty())
-        << "the map may err by as much again";
-    if (std::abs(depth) < kCell) continue;
+    // Twice the tolerance of 0.2 m, as the map may err by as much again; tried every half a cell.
+    EXPECT_TRUE(depth > 0.4 - out - 0.5 * kCell || ToString(seen.failure).empty());
+    if (depth > -out - 0.02 && depth < kCell) continue;  // local control keeps 0.02 m
     EXPECT_EQ(WhyGoalIsTight(*context, X_MT) != "", depth > 0.0) << "within its tolerance or not";
   }
   EXPECT_GT(num_blocked, 0);
