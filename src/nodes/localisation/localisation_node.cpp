@@ -52,7 +52,7 @@ LocalisationNode::LocalisationNode(const LocalisationNodeParams& params, ros::No
       map_server_(nh->resolveName(params.names.static_map)),
       kept_(params.kept),
       keeper_(ros::NodeHandle("~")),
-      is_told_(params.is_start_told),
+      has_place_(params.is_start_given),
       begun_(hires::base::SteadyNow()) {
   const std::string& told = params.names.localisation;
   pose_ = nh->advertise<geometry_msgs::PoseWithCovarianceStamped>(told.empty() ? kAmclPose : told,
@@ -180,7 +180,7 @@ bool LocalisationNode::SetPose(const UncertainPose& pose) {
     return false;
   }
   filter_->SetPose(pose.X_AB, pose.covariance);
-  is_told_ = true;
+  has_place_ = true;
   hires::base::Log(LogLevel::kInfo, fmt::format("pose=set x={:.3f} y={:.3f} yaw={:.3f}",
                                                 pose.X_AB.x, pose.X_AB.y, pose.X_AB.yaw));
   return true;
@@ -258,9 +258,9 @@ void LocalisationNode::Use(const PlacedScan& scan) {
   is_updated_ = is_updated_ || outcome == ScanOutcome::kUpdated;
   const bool is_new = NoteLost(scan.header.stamp.toSec()) || outcome == ScanOutcome::kUpdated ||
                       (localisation::IsBad(outcome) && IsLessSure(scan.header.stamp.toSec()));
-  is_told_ = is_told_ || (is_updated_ && !is_lost_);
+  has_place_ = has_place_ || (is_updated_ && !is_lost_);
   // The odometry goes on below the map, also where the laser sees nothing.
-  if (!is_updated_ || !is_told_ || !is_followed) return;
+  if (!is_updated_ || !has_place_ || !is_followed) return;
   Publish(scan.header.stamp, is_new);
   Keep(scan);
 }

@@ -74,7 +74,7 @@ class LocalisationNode {
   PoseKeeper keeper_;
   bool is_updated_{false};  // by a scan since it began
   bool is_lost_{false};     // as was told last
-  bool is_told_;            // whether somebody said where it begins, or its scans agreed with it
+  bool has_place_;          // whether somebody said where it begins, or its scans agreed with it
   Eigen::Matrix3d told_covariance_{Eigen::Matrix3d::Zero()};
   double begun_;  // [s] steady
 

@@ -74,7 +74,7 @@ LocalisationNodeParams LoadLocalisationNodeParams() {
   params.seed = static_cast<std::uint64_t>(seed);
   params.map = MapOfFile(PrivateText("map_file").value_or(""));
   OverrideStart(&params.config.filter);
-  params.is_start_told =
+  params.is_start_given =
       std::any_of(kPoseKeys.begin(), kPoseKeys.end(),
                   [](const std::string& key) { return PrivateNumber(key).has_value(); });
   params.kept = ReadKeptPlace();

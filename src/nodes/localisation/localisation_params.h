@@ -15,7 +15,7 @@ struct LocalisationNodeParams {
   hires::control::RobotNames names;                ///< with base_scan
   std::uint64_t seed{1};                           ///< of all chance
   std::optional<hires::world::OccupancyGrid> map;  ///< of ~map_file; nothing: it comes by topic
-  bool is_start_told{false};      ///< by a private parameter, not by the file alone
+  bool is_start_given{false};     ///< by a private parameter, not by the file alone
   std::optional<KeptPlace> kept;  ///< by a process of this name before
 };
 

@@ -9,6 +9,7 @@
 #include "hires/robot/link_bounds.h"
 #include "skills/driving/base_limits.h"
 #include "skills/driving/by_height.h"
+#include "skills/driving/narrow_place.h"
 #include "skills/driving/way_blocked.h"
 #include "skills/posture_skills.h"
 #include "world/floor_level.h"

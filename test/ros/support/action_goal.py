@@ -11,7 +11,7 @@ import threading
 import xmlrpc.client
 
 from listeners import listeners
-from ros_processes import LIMIT, BoundedTransport, wait_until
+from ros_processes import LIMIT, bounded_proxy, wait_until
 
 
 def require_server(client, output):
@@ -40,7 +40,7 @@ def _is_served(client):
 
 
 def _bus_info(uri):
-    with xmlrpc.client.ServerProxy(uri, transport=BoundedTransport()) as node:
+    with bounded_proxy(uri) as node:
         return node.getBusInfo('/test')[2]
 
 

@@ -87,13 +87,16 @@ def executable(name, package='hires'):
     raise AssertionError('%s is not built, or setup.bash is not sourced' % name)
 
 
-class BoundedTransport(xmlrpc.client.Transport):
-    """Of calls to a node: who is given its port may accept them and never answer."""
-
+class _BoundedTransport(xmlrpc.client.Transport):
     def make_connection(self, host):
         connection = super().make_connection(host)
         connection.timeout = 5.0
         return connection
+
+
+def bounded_proxy(uri):
+    """Of a node or master: who is given the port of one that is gone may accept calls and never answer."""
+    return xmlrpc.client.ServerProxy(uri, transport=_BoundedTransport())
 
 
 class Process:
@@ -231,7 +234,7 @@ class Master:
         if not uri.startswith('http://127.0.0.1:'):
             return False
         try:
-            with xmlrpc.client.ServerProxy(uri, transport=BoundedTransport()) as node:
+            with bounded_proxy(uri) as node:
                 pid = node.getPid('/test')[2]
         except ConnectionRefusedError:
             return True
@@ -243,7 +246,7 @@ class Master:
         """The value, or None when there is no answer or a failure."""
         try:
             # A proxy of its own for each call: tests kill and stop masters at any time.
-            with xmlrpc.client.ServerProxy(self.uri, transport=BoundedTransport()) as proxy:
+            with bounded_proxy(self.uri) as proxy:
                 code, _, value = getattr(proxy, method)(caller, *arguments)
         except (OSError, xmlrpc.client.Error, xmlrpc.client.http.client.HTTPException):
             return None
