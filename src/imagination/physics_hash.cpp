@@ -3,6 +3,12 @@
 #include "hires/base/hash.h"
 
 namespace hires::imagination {
+namespace {
+
+/// Of the simulator: raised whenever the same calls give other results.
+constexpr double kPhysicsVersion = 2.0;
+
+}  // namespace
 
 std::uint64_t PhysicsHash(const physics::PhysicsParams& physics, const RolloutParams& rollout,
                           const world::StandingCriterion& standing) {
@@ -10,6 +16,7 @@ std::uint64_t PhysicsHash(const physics::PhysicsParams& physics, const RolloutPa
   const auto add = [&hasher](std::initializer_list<double> values) {
     for (const double value : values) hasher.Add(value);
   };
+  hasher.Add(kPhysicsVersion);
   // All members by name: one that is added to a struct and not here does not compile.
   const auto& [time_step, gravity, erp, cfm, surface_layer, max_correcting_velocity,
                restitution_threshold] = physics;

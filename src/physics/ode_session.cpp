@@ -83,11 +83,4 @@ std::vector<std::string> TakeOdeMessages() {
   return taken;
 }
 
-std::size_t NumOdeMessages() { return messages.kept.size() + messages.num_dropped; }
-
-void ForgetOdeMessages(std::size_t num_left) {
-  messages.kept.resize(std::min(messages.kept.size(), num_left));
-  messages.num_dropped = num_left - messages.kept.size();
-}
-
 }  // namespace hires::physics

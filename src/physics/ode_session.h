@@ -1,6 +1,5 @@
 #pragma once
 
-#include <cstddef>
 #include <string>
 #include <vector>
 
@@ -14,11 +13,5 @@ void EnsureOdeIsReady();
 /// What ODE said in this thread since the last call, oldest first. Of a flood the first hundred are
 /// kept and the rest is counted in a last line.
 std::vector<std::string> TakeOdeMessages();
-
-/// How many messages TakeOdeMessages() has to give, dropped ones included.
-std::size_t NumOdeMessages();
-
-/// Forgets the newest ones until `num_left` are left: what they spoke of was put right.
-void ForgetOdeMessages(std::size_t num_left);
 
 }  // namespace hires::physics

@@ -71,14 +71,9 @@ PhysicsWorld::Impl::Impl(const PhysicsParams& params_in) : params(params_in), gr
   EnsureOdeIsReady();
   threading.reset(dThreadingAllocateSelfThreadedImplementation());
   world.reset(dWorldCreate());
-  joints.reset(dJointGroupCreate(0));
   dWorldSetStepThreadingImplementation(
       world.get(), dThreadingImplementationGetFunctions(threading.get()), threading.get());
   dWorldSetGravity(world.get(), 0.0, 0.0, -params.gravity);
-  dWorldSetERP(world.get(), params.erp);
-  dWorldSetCFM(world.get(), params.cfm);
-  dWorldSetContactSurfaceLayer(world.get(), params.surface_layer);
-  dWorldSetContactMaxCorrectingVel(world.get(), params.max_correcting_velocity);
   dWorldSetAutoDisableFlag(world.get(), 0);
 }
 
@@ -112,6 +107,8 @@ LooseBody PhysicsWorld::Impl::MakeLoose(const geometry::MassProperties& properti
                                         const std::vector<geometry::Collision>& collisions) {
   LooseBody body;
   body.p_BC = properties.p_BBcm;
+  body.mass = properties.mass;
+  body.I_B = properties.I_BBcm;
   for (const geometry::Collision& collision : collisions) {
     const Vector3d p_CS = collision.X_BS.translation - body.p_BC;
     const Matrix3d R_BS = collision.X_BS.rotation.normalized().toRotationMatrix();
@@ -291,7 +288,6 @@ void PhysicsWorld::Step() {
   impl.num_contacts = static_cast<int>(impl.contacts.size());
   impl.MoveLoose();
   impl.NoteBroken();
-  dJointGroupEmpty(impl.joints.get());
   impl.MoveDriven();
   for (LooseBody* body : impl.awake) body->is_canonical = false;
   impl.RestWhatCan();

@@ -20,22 +20,16 @@ using Eigen::Vector3d;
 /// How far a loose body may go before its list of near shapes is made again [m]. A wider
 /// margin makes longer lists, a narrower one makes them more often.
 constexpr double kNearMargin = 0.1;
-/// Slip below this has no direction worth following [m/s].
-constexpr double kNoSlip = 1e-9;
 /// A push below this does not say where a body will tip [m/s].
 constexpr double kNoLean = 1e-6;
 
-double SquaredDistance(const geometry::Aabb& bounds, const Vector3d& p) {
-  return (bounds.lower - p).cwiseMax(p - bounds.upper).cwiseMax(0.0).squaredNorm();
+/// [m/s] of the body's material point at p_W at the start of the step.
+Vector3d StartVelocity(const LooseBody& body, const Vector3d& p_W) {
+  return ToEigen(dBodyGetLinearVel(body.ode)) + body.w.cross(p_W - body.p_WC);
 }
 
-/// A direction in the contact plane: along the slip, or any one where there is none.
-Vector3d FrictionDirection(const Vector3d& slip, const Vector3d& normal) {
-  const Vector3d tangential = slip - normal * normal.dot(slip);
-  const double speed = tangential.norm();
-  if (speed > kNoSlip) return tangential / speed;
-  const Vector3d any = std::abs(normal.x()) < 0.7 ? Vector3d::UnitX() : Vector3d::UnitY();
-  return (any - normal * normal.dot(any)).normalized();
+double SquaredDistance(const geometry::Aabb& bounds, const Vector3d& p) {
+  return (bounds.lower - p).cwiseMax(p - bounds.upper).cwiseMax(0.0).squaredNorm();
 }
 
 /// Whether the group's body holds the held one.
@@ -44,18 +38,14 @@ bool IsGrip(const HeldBody& held, const Group& group) {
          std::find(held.grip.begin(), held.grip.end(), group.body) != held.grip.end();
 }
 
-void CopyTo(dReal* to, const Vector3d& from) {
-  for (int i = 0; i < 3; ++i) to[i] = from[i];
-}
-
 }  // namespace
 
 void PhysicsWorld::Impl::PlaceLoose(LooseBody* body) {
-  const Matrix3d R_WB = RotationOf(body->ode);
+  const Matrix3d R_WB = body->R_WB = RotationOf(body->ode);
   body->p_WC = ToEigen(dBodyGetPosition(body->ode));
   body->v = ToEigen(dBodyGetLinearVel(body->ode));
   body->w = ToEigen(dBodyGetAngularVel(body->ode));
-  // What gravity and shaking will do during the step belongs to the slip that friction works on.
+  // Friction and contact points depend on the slip that gravity and shaking cause in the step.
   if (!body->held)
     body->v += params.time_step * (acceleration + Vector3d(0.0, 0.0, -params.gravity));
   for (LooseShape& at : body->shapes) {
@@ -73,7 +63,6 @@ void PhysicsWorld::Impl::PlaceAllLoose() {
 
 void PhysicsWorld::Impl::FindAllContacts() {
   contacts.clear();
-  is_pile = false;
   fastest_surface2 = 0.0;
   touches.clear();
   awake.clear();
@@ -198,47 +187,43 @@ template <typename SurfaceVelocity>
 void PhysicsWorld::Impl::AddContacts(const PlacedShape& shape, const PlacedShape& other,
                                      LooseBody* body, LooseBody* other_body,
                                      const SurfaceVelocity& other_velocity) {
-  dContact contact = ContactOf(shape, other, other_body != nullptr);
+  const double friction = std::min(shape.friction(), other.friction());
+  const double restitution = std::max(shape.restitution(), other.restitution());
   for (const ContactPoint& point : found) {
-    AddContact(point, other_velocity(point.position), 0.0, body, other_body, &contact);
+    Vector3d approach = StartVelocity(*body, point.position);
+    approach -= other_body != nullptr ? StartVelocity(*other_body, point.position)
+                                      : other_velocity(point.position);
+    const double wanted = WantedNormalSpeed(point.depth, restitution, point.normal.dot(approach));
+    AddContact(point, other_velocity(point.position), wanted, friction, body, other_body);
   }
 }
 
-dContact PhysicsWorld::Impl::ContactOf(const PlacedShape& shape, const PlacedShape& other,
-                                       bool is_other_loose) const {
-  dContact contact;
-  contact.surface.mode = dContactFDir1 | dContactApprox1;
-  contact.surface.mu = std::min(shape.friction(), other.friction());
-  contact.surface.bounce = std::max(shape.restitution(), other.restitution());
-  contact.surface.bounce_vel = params.restitution_threshold;
-  if (contact.surface.bounce > 0.0) contact.surface.mode |= dContactBounce;
-  if (!is_other_loose) {
-    contact.surface.mode |= dContactMotionN | dContactMotion1 | dContactMotion2;
-  }
-  contact.geom.g1 = contact.geom.g2 = nullptr;
-  contact.geom.side1 = contact.geom.side2 = -1;
-  return contact;
+double PhysicsWorld::Impl::WantedNormalSpeed(double depth, double restitution,
+                                             double approach) const {
+  const double excess = std::max(0.0, depth - params.surface_layer);
+  const double repair =
+      std::min(params.erp / params.time_step * excess, params.max_correcting_velocity);
+  if (restitution <= 0.0 || -approach <= params.restitution_threshold) return repair;
+  return std::max(repair, -restitution * approach);
 }
 
 void PhysicsWorld::Impl::AddContact(const ContactPoint& point, const Vector3d& v_other,
-                                    double closing_speed, LooseBody* body, LooseBody* other_body,
-                                    dContact* contact) {
-  const Vector3d v_body = body->v + body->w.cross(point.position - body->p_WC);
-  const Vector3d slip = v_body - v_other;
+                                    double wanted_speed, double friction, LooseBody* body,
+                                    LooseBody* other_body) {
   fastest_surface2 = std::max(fastest_surface2, v_other.squaredNorm());
-  if (other_body != nullptr) fastest_surface2 = std::max(fastest_surface2, v_body.squaredNorm());
-  const Vector3d along = FrictionDirection(slip, point.normal);
-  contact->surface.motionN = v_other.dot(point.normal) - closing_speed;
-  contact->surface.motion1 = v_other.dot(along);
-  contact->surface.motion2 = v_other.dot(point.normal.cross(along));
-  CopyTo(contact->geom.pos, point.position);
-  CopyTo(contact->geom.normal, point.normal);
-  contact->geom.depth = point.depth;
-  CopyTo(contact->fdir1, along);
-  const int index = static_cast<int>(body - loose.data());
-  const int other = other_body == nullptr ? -1 : static_cast<int>(other_body - loose.data());
-  contacts.push_back({*contact, index, other, point.normal.cross(slip).norm()});
-  is_pile = is_pile || (other >= 0 && !body->held && !other_body->held);
+  if (other_body != nullptr) {
+    const Vector3d v_body = body->v + body->w.cross(point.position - body->p_WC);
+    fastest_surface2 = std::max(fastest_surface2, v_body.squaredNorm());
+  }
+  SolverContact contact;
+  contact.position = point.position;
+  contact.normal = point.normal;
+  contact.wanted = wanted_speed * point.normal;
+  if (other_body == nullptr) contact.wanted += v_other;
+  contact.friction = friction;
+  contact.body = static_cast<int>(body - loose.data());
+  if (other_body != nullptr) contact.other = static_cast<int>(other_body - loose.data());
+  contacts.push_back(contact);
 }
 
 void PhysicsWorld::Impl::CatchFast(const Group& group, const Vector3d& v_rel, Fixture* fixture,
@@ -251,13 +236,15 @@ void PhysicsWorld::Impl::CatchFast(const Group& group, const Vector3d& v_rel, Fi
   const double gap = -ray.distance * direction.dot(ray.normal) - body->inside;
   const double closing = -v_rel.dot(ray.normal);
   if (gap <= 0.0 || closing * time_step <= gap) return;
-  dContact contact = ContactOf(body->shapes.front().shape, fixture->shape, false);
-  // ODE bounces from the speed that exceeds the closing speed; what counts is the whole.
-  const double closing_speed = gap / time_step;
-  contact.surface.bounce =
-      (closing_speed + contact.surface.bounce * closing) / (closing - closing_speed);
+  const PlacedShape& own = body->shapes.front().shape;
+  const double restitution = std::max(own.restitution(), fixture->shape.restitution());
+  // It comes up to the surface and no farther, or bounces from there.
+  const double wanted = closing > params.restitution_threshold && restitution > 0.0
+                            ? restitution * closing
+                            : -gap / time_step;
   const ContactPoint point{body->p_WC - body->inside * ray.normal, ray.normal, 0.0};
-  AddContact(point, group.VelocityAt(point.position), closing_speed, body, nullptr, &contact);
+  AddContact(point, group.VelocityAt(point.position), wanted,
+             std::min(own.friction(), fixture->shape.friction()), body, nullptr);
 }
 
 }  // namespace hires::physics

@@ -75,6 +75,8 @@ struct LooseShape {
 struct LooseBody {
   dBodyID ode;
   Vector3d p_BC;
+  double mass{0.0};  // [kg]
+  Matrix3d I_B;      // [kg m^2] about C
   std::vector<LooseShape> shapes;
   double reach{0.0};           // no point is farther from C [m]
   double inside{0.0};          // radius of a ball within the thickest shape [m]
@@ -87,20 +89,9 @@ struct LooseBody {
   bool is_resting{false};  // ODE leaves it out then, and its shapes stay placed
   bool is_reached{false};  // see PhysicsWorld::IsReached
 
-  Vector3d p_WC, v, w;  // at the start of the step
-};
-
-/// A contact point of this step.
-struct PlacedContact {
-  dContact contact;
-  int body, other;  // indices of loose bodies; other -1: static or driven
-  double slip;      // [m/s] in the contact plane
-};
-
-/// ODE's own numbers of a body.
-struct RawState {
-  dVector3 position, linear, angular;
-  dQuaternion rotation;
+  // At the start of the step; v as it would be at the end without contacts.
+  Vector3d p_WC, v, w;
+  Matrix3d R_WB;
 };
 
 enum class BodyKind { kStatic, kDriven, kLoose };
@@ -121,7 +112,6 @@ inline Matrix3d RotationOf(dBodyID body) {
 /// How ODE's things are given back.
 struct Deleters {
   void operator()(dxWorld* world) const { dWorldDestroy(world); }
-  void operator()(dxJointGroup* group) const { dJointGroupDestroy(group); }
   void operator()(dxThreadingImplementation* threading) const {
     dThreadingFreeImplementation(threading);
   }
@@ -138,8 +128,6 @@ struct PhysicsWorld::Impl {
   using Group = detail::Group;
   using LooseBody = detail::LooseBody;
   using NearList = detail::NearList;
-  using PlacedContact = detail::PlacedContact;
-  using RawState = detail::RawState;
 
   explicit Impl(const PhysicsParams& params_in);
 
@@ -188,40 +176,36 @@ struct PhysicsWorld::Impl {
                     NearList* near) const;
   /// Lets a body that would pass through a shape within this step come up to it and no farther.
   void CatchFast(const Group& group, const Vector3d& v_rel, Fixture* fixture, LooseBody* body);
-  dContact ContactOf(const PlacedShape& shape, const PlacedShape& other, bool is_other_loose) const;
-  /// `closing_speed` is what the normal velocity may be at most towards the other body [m/s].
-  void AddContact(const ContactPoint& point, const Vector3d& v_other, double closing_speed,
-                  LooseBody* body, LooseBody* other_body, dContact* contact);
+  /// The normal velocity [m/s] relative to the other surface that a contact enforces as a lower
+  /// bound: it repairs penetration and bounces.
+  /// @param approach  normal velocity at the start of the step
+  double WantedNormalSpeed(double depth, double restitution, double approach) const;
+  /// @param wanted_speed  [m/s] see WantedNormalSpeed
+  void AddContact(const ContactPoint& point, const Vector3d& v_other, double wanted_speed,
+                  double friction, LooseBody* body, LooseBody* other_body);
   template <typename SurfaceVelocity>
   void AddContacts(const PlacedShape& shape, const PlacedShape& other, LooseBody* body,
                    LooseBody* other_body, const SurfaceVelocity& other_velocity);
   void MoveLoose();
-  void MoveByOde();
-  /// True if it found how; else all is as before.
-  bool MoveBySolver();
-  /// What all loose bodies are after a step without contacts.
-  std::vector<SolverBody> FreeBodies();
+  /// All loose bodies as they would be after a step without contacts.
+  void FindFreeBodies();
   void NoteBroken();
-  void KeepRaw();
-  void PutRawBack();
   void MoveDriven();
 
   PhysicsParams params;
   Vector3d acceleration{Vector3d::Zero()};  // extra, of loose bodies
   std::uint64_t num_steps{0};
   int num_contacts{0};                  // of the last step
-  std::vector<PlacedContact> contacts;  // of what FindAllContacts looked at last
-  bool is_pile{false};                  // some loose bodies touch one another
+  std::vector<SolverContact> contacts;  // of what FindAllContacts looked at last
   double fastest_surface2{0.0};         // [m^2/s^2] of all that touched a loose body in this step
   BodyId broken{-1};
   std::unique_ptr<dxThreadingImplementation, Deleters> threading;  // outlives the world
   std::unique_ptr<dxWorld, Deleters> world;
-  std::unique_ptr<dxJointGroup, Deleters> joints;
   std::vector<BodyEntry> entries;  // by BodyId
   std::vector<Group> groups;       // 0 is the static one
   std::vector<LooseBody> loose;
   std::vector<LooseBody*> awake;  // those that FindAllContacts looked at last: that do not rest
-  std::vector<RawState> raw;      // of the loose bodies, at the start of the step
+  std::vector<SolverBody> solver_bodies;  // by index of loose bodies
   std::vector<geometry::Pose3> static_poses;
   ContactList found;
   std::vector<Vector3d> below;  // contact points of one body, for CanRest

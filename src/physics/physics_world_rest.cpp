@@ -13,7 +13,6 @@ using detail::Fixture;
 using detail::Group;
 using detail::LooseBody;
 using detail::LooseShape;
-using detail::PlacedContact;
 using detail::ToEigen;
 using Eigen::Vector3d;
 
@@ -141,13 +140,12 @@ bool PhysicsWorld::Impl::CanRest(int index) {
                  w = ToEigen(dBodyGetAngularVel(body.ode));
   if (v.norm() + body.reach * w.norm() > kHardly) return false;
   below.clear();
-  for (const PlacedContact& placed : contacts) {
-    if (placed.other == index) return false;
-    if (placed.body != index) continue;
-    if (placed.other >= 0) return false;
-    const Vector3d normal = ToEigen(placed.contact.geom.normal);
-    if (normal.z() < std::cos(kStraight)) continue;
-    below.push_back(ToEigen(placed.contact.geom.pos));
+  for (const SolverContact& contact : contacts) {
+    if (contact.other == index) return false;
+    if (contact.body != index) continue;
+    if (contact.other >= 0) return false;
+    if (contact.normal.z() < std::cos(kStraight)) continue;
+    below.push_back(contact.position);
   }
   return IsOver(below, body.p_WC);
 }
