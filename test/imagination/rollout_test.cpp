@@ -132,7 +132,7 @@ TEST(RolloutTest, WhatWasKnockedOverBeforePhysicsBrokeCounts) {
     hires::test_support::AddModel(
         &room, hires::test_support::Mill("thing", rng.Uniform(0.15, 0.4), radius));
     robot::Robot robot = TrayRobot();
-    const double belly = 2.0 * radius - rng.Uniform(0.0, 0.02);
+    const double belly = 2.0 * radius - rng.Uniform(0.0, 0.06);
     robot.model.links[0].collisions[0] = hires::test_support::Shape(
         "base", geometry::Box{{0.6, 0.5, 0.3 - belly}}, {0.0, 0.0, 0.5 * (0.3 + belly)});
     RolloutSetup setup = RoomRollouts(room, "", "none", robot);

@@ -341,8 +341,9 @@ TEST(RobotSimulatorTest, AttachedObjectsRideAlongRigidly) {
   EXPECT_THROW(simulator.PutBack(0), std::logic_error);
 }
 
-TEST(RobotSimulatorTest, AnAttachedObjectPushesWhatStandsInItsWay) {
-  world::ObjectState held = OnTray("held", "tower", {1.5, 2.0, 0.0}, {0.0, 0.1});
+TEST(RobotSimulatorTest, AttachedObjectPushesAnObjectInItsPath) {
+  // It reaches over the front of base and tray, so that neither touches the other tower.
+  world::ObjectState held = OnTray("held", "tower", {1.5, 2.0, 0.0}, {0.12, 0.1});
   held.attached_to = "tray";
   world::ObjectState on_floor = OnTray("on_floor", "tower", {1.5, 2.0, 0.0}, {0.4, 0.1});
   on_floor.X_MO.translation.z() = 0.0002;

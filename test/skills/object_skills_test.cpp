@@ -452,7 +452,7 @@ TEST(PlaceObjectTest, WhatNobodyToldOfIsWaitedForAndNotPutDownOn) {
 TEST(PickUpObjectFailureTest, FingersThatCloseOnNothingDrawBack) {
   Rehearsal rehearsal(ReadyAt(kAtCounter), {On("mug1", kCounter)});
   const auto deceive = [](Rehearsal*, const Skill&, robot::Observation* seen) {
-    for (robot::SeenObject& object : seen->objects) object.X_MO.translation.y() -= 0.12;
+    for (robot::SeenObject& object : seen->objects) object.X_MO.translation.y() -= 0.16;
   };
   const Played played = rehearsal.Play({"pick_up_object", {"mug1", "rightarm1"}}, deceive);
   EXPECT_EQ(Why(played), "grasp_failed");
