@@ -18,6 +18,7 @@ using testing::HasSubstr;
 
 constexpr double kScaleStep = 0.03;  // a limit lies so far below what nothing bears
 constexpr double kModel = 0.002;     // by so much the model's numbers are rounded
+constexpr double kGravity = 9.8;    // [m/s^2] of the world of config/scene.yaml
 const physics::UprightCylinder kMill{0.037, 0.274, 0.140};  // peppermill1
 
 imagination::ImaginationSetup SetupWith(
@@ -72,7 +73,8 @@ TEST(MotionLimitsTest, TheSpeedOfALockedWheelIsTheClosedForms) {
   EXPECT_NEAR(report->Of("turning").value, speed / reach, 2.0 * kScaleStep * speed / reach);
   const double tips = physics::TippingAcceleration(kMill, 9.81);
   EXPECT_NEAR(report->Of("deceleration").closed_form, tips, kModel * tips);
-  const std::vector<MotionBounds> bounds = ClosedFormLimits("peppermill1", SetupWith(MakeIdeal));
+  const std::vector<MotionBounds> bounds =
+      ClosedFormLimits({"peppermill1"}, SetupWith(MakeIdeal)).weakest;
   ASSERT_EQ(bounds.size(), 4u);
   for (const MotionBounds& motion : bounds) {
     EXPECT_EQ(motion.closed_form, report->Of(motion.motion).closed_form) << motion.motion;
@@ -90,7 +92,7 @@ TEST(MotionLimitsTest, WhatIsRoundBelowRollsAtAnyMotion) {
         "<sdf version='1.7'><model name='thing'><link name='l'><inertial><mass>0.3</mass><inertia>"
         "<ixx>0.0003</ixx><iyy>0.0003</iyy><izz>0.0003</izz></inertia></inertial>" +
             shapes + "</link></model></sdf>")};
-    return ClosedFormLimits("thing", imagination::LoadImaginationSetup(config));
+    return ClosedFormLimits({"thing"}, imagination::LoadImaginationSetup(config)).weakest;
   };
   const auto shape = [](const std::string& name, const std::string& pose, const std::string& text) {
     return "<collision name='" + name + "'><pose>" + pose + "</pose><geometry>" + text +
@@ -189,7 +191,7 @@ TEST(MotionLimitsTest, TurningDoesNotPushWhatStandsOverTheBasesCentre) {
   MakeIdeal(&scene.robot.profile.base_controller);
   scene.X_BO.translation.head<2>().setZero();
   setup.scene = std::make_shared<const simulation::Scene>(scene);
-  EXPECT_NE(ClosedFormLimits("peppermill1", setup)[3].stated.find("turning does not push it"),
+  EXPECT_NE(ClosedFormLimits({"peppermill1"}, setup).weakest[3].stated.find("turning does not push it"),
             std::string::npos);
 }
 
@@ -225,6 +227,110 @@ TEST(MotionLimitsTest, WhatStandsFirmlyIsAskedForAsFarAsTheWheelsBringTheBase) {
     ASSERT_TRUE(report) << object;
     EXPECT_GT(report->Of("together").value, 0.0) << object;
     EXPECT_LE(report->Of("together").value, 1.0) << object;
+  }
+}
+
+/// Robot plat: a differential base that stops within a step, a plate of 0.40 x 0.40 m.
+imagination::ImaginationSetup PlateSetup(const hires::test_support::TemporaryFolder& folder,
+                                         const std::vector<std::string>& objects,
+                                         const std::string& place = "0, 0, 0") {
+  const std::string config_folder = std::string(HIRES_SOURCE_DIR) + "/config/";
+  imagination::SetupConfig config = imagination::ReadSetupConfig(config_folder + "scene.yaml");
+  config.uncertainty = "none";
+  config.extra_objects = objects;
+  folder.Write("plat.urdf",
+               "<robot name='plat'><link name='base'><collision><origin xyz='0 0 0.2'/><geometry>"
+               "<box size='0.8 0.5 0.3'/></geometry></collision></link><joint name='j' "
+               "type='fixed'><origin xyz='0 0 0.4'/><parent link='base'/><child link='tray'/>"
+               "</joint><link name='tray'><collision><origin xyz='0 0 -0.01'/><geometry><box "
+               "size='0.4 0.4 0.02'/></geometry></collision></link></robot>");
+  config.robot = folder.Write(
+      "plat.yaml",
+      "urdf: plat.urdf\nbase_link: base\ntray_link: tray\nobject_on_tray: {xyz: [" + place +
+          "], rpy: [0, 0, 0]}\nbase_controller: {drive: differential, at_timeout: stop, limits: "
+          "{max_linear_velocity: 3.0, max_angular_velocity: 8.0, max_linear_acceleration: 12.0, "
+          "max_angular_acceleration: 100.0}}\n");
+  return imagination::LoadImaginationSetup(config);
+}
+
+std::string BoxFile(const hires::test_support::TemporaryFolder& folder, const std::string& name,
+                    const std::string& size) {
+  return folder.Write(name + ".yaml", "{shape: box, " + size + ", mass: 2.0, friction: 0.9}");
+}
+
+TEST(MotionLimitsTest, ClosedFormUsesTheDirectionOfTravel) {
+  const hires::test_support::TemporaryFolder folder;
+  const std::string deep = BoxFile(folder, "deep", "depth: 0.20, width: 0.10, height: 0.60");
+  auto setup = PlateSetup(folder, {deep});
+  const auto differential = ClosedFormLimits({"deep"}, setup).weakest;
+  EXPECT_NEAR(differential[0].closed_form, 0.686, 0.0005);  // b = 0.10, c = 0.30
+  EXPECT_NEAR(differential[1].closed_form, kGravity * 0.10 / 0.30, 1e-9);
+  EXPECT_NEAR(differential[2].closed_form, kGravity * 0.10 / 0.30, 1e-9);
+  simulation::Scene scene = *setup.scene;
+  scene.robot.profile.base_controller.drive = robot::Drive::kOmnidirectional;
+  setup.scene = std::make_shared<const simulation::Scene>(scene);
+  EXPECT_NEAR(ClosedFormLimits({"deep"}, setup).weakest[1].closed_form, kGravity * 0.05 / 0.30, 1e-9);
+}
+
+TEST(MotionLimitsTest, ClosedFormOfTurningFollowsThePositionOnTheTray) {
+  const hires::test_support::TemporaryFolder folder;
+  const std::string tall = BoxFile(folder, "tall", "depth: 0.10, width: 0.20, height: 0.60");
+  const MotionBounds front =
+      ClosedFormLimits({"tall"}, PlateSetup(folder, {tall}, "0.12, 0, 0")).weakest[3];
+  // The centrifugal force acts along x (b = 0.05), the stop along y (b = 0.10).
+  EXPECT_NEAR(front.closed_form, std::sqrt(kGravity * 0.05 / 0.30 / 0.12), 1e-6);
+  EXPECT_THAT(front.stated, AllOf(HasSubstr("tips outward on the arc"), HasSubstr("5.72")));
+  const MotionBounds side =
+      ClosedFormLimits({"tall"}, PlateSetup(folder, {tall}, "0, 0.1, 0")).weakest[3];
+  EXPECT_NEAR(side.closed_form, 0.333 / 0.1, 0.005);  // the stop acts along x
+  EXPECT_THAT(side.stated, HasSubstr("topples where wheels lock"));
+}
+
+TEST(MotionLimitsTest, OverhangingPayloadTipsAboutThePlatesEdge) {
+  const hires::test_support::TemporaryFolder folder;
+  const std::string load = BoxFile(folder, "load", "depth: 1.0, width: 0.8, height: 1.6");
+  const ClosedForms forms = ClosedFormLimits({"load"}, PlateSetup(folder, {load}));
+  EXPECT_NEAR(forms.weakest[1].closed_form, kGravity * 0.20 / 0.80, 1e-9);
+  // v = sqrt(2 g (R - c) I_A / m) / c with R = 0.8246 m, I_A / m = 0.9767 m^2
+  EXPECT_NEAR(forms.weakest[0].closed_form, 0.858, 0.0005);
+  EXPECT_NEAR(forms.payloads[0].overhang.x(), 0.30, 1e-9);
+  EXPECT_NEAR(forms.payloads[0].overhang.y(), 0.20, 1e-9);
+  EXPECT_THAT(ClosedFormText(forms, false), HasSubstr("load extends 0.30 / 0.20 m"));
+}
+
+TEST(MotionLimitsTest, CanAtThePlatesEdgeTipsOverItsRemainingSupport) {
+  const hires::test_support::TemporaryFolder folder;
+  const std::string can = folder.Write(
+      "can.yaml", "{shape: cylinder, radius: 0.033, height: 0.2, mass: 0.5, friction: 0.9}");
+  const ClosedForms inside = ClosedFormLimits({"can"}, PlateSetup(folder, {can}));
+  EXPECT_NEAR(inside.weakest[1].closed_form, kGravity * 0.033 / 0.1, 1e-3);
+  EXPECT_EQ(inside.payloads[0].overhang.maxCoeff(), 0.0);
+  const ClosedForms edge = ClosedFormLimits({"can"}, PlateSetup(folder, {can}, "0.19, 0, 0"));
+  EXPECT_NEAR(edge.weakest[1].closed_form, kGravity * 0.01 / 0.1, 1e-6);
+  EXPECT_NEAR(edge.payloads[0].overhang.x(), 0.023, 1e-3);
+}
+
+TEST(MotionLimitsTest, LegsNextToThePlateAreRefusedWithTheReason) {
+  const hires::test_support::TemporaryFolder folder;
+  std::string shapes =
+      "<collision name='deck'><pose>0 0 0.27 0 0 0</pose><geometry><box><size>1.0 0.8 0.04</size>"
+      "</box></geometry></collision>";
+  for (const auto& [name, pose] : {std::pair("a", "0.47 0.37"), std::pair("b", "0.47 -0.37"),
+                                   std::pair("c", "-0.47 0.37"), std::pair("d", "-0.47 -0.37")}) {
+    shapes += std::string("<collision name='") + name + "'><pose>" + pose +
+              " 0.125 0 0 0</pose><geometry><box><size>0.04 0.04 0.25</size></box></geometry>"
+              "</collision>";
+  }
+  const std::string shelf = folder.Write(
+      "shelf.sdf",
+      "<sdf version='1.7'><model name='shelf'><link name='l'><inertial><pose>0 0 0.27 0 0 0</pose>"
+      "<mass>30</mass><inertia><ixx>2.6</ixx><iyy>3.5</iyy><izz>4.1</izz></inertia></inertial>" +
+          shapes + "</link></model></sdf>");
+  try {
+    ClosedFormLimits({"shelf"}, PlateSetup(folder, {shelf}));
+    FAIL() << "no error";
+  } catch (const base::ConfigError& error) {
+    EXPECT_THAT(error.what(), AllOf(HasSubstr("'shelf'"), HasSubstr("no plate below them")));
   }
 }
 

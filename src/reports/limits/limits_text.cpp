@@ -47,8 +47,26 @@ const char* OwnHeading(bool is_assumed) {
 const std::vector<std::string>& LeftOut() {
   static const std::vector<std::string> texts{
       "whether the robot itself tips over", "liquids that slosh",
-      "loads that hang over the edge of the tray, or swing"};
+      "payloads that swing"};
   return texts;
+}
+
+/// A line for each payload that extends beyond the plate by as much as two decimals show.
+std::string OverhangText(const std::vector<PayloadSupport>& payloads) {
+  std::string text;
+  for (const PayloadSupport& payload : payloads) {
+    const Eigen::Vector2d& over = payload.overhang;
+    if (over.maxCoeff() < 0.005) continue;
+    text += fmt::format("overhang: {} extends {:.2f} / {:.2f} m (x / y) beyond the tray's plate\n",
+                        payload.name, over.x(), over.y());
+  }
+  return text;
+}
+
+nlohmann::ordered_json ToJson(const PayloadSupport& payload) {
+  return {{"object", payload.name},
+          {"position_m", {payload.p_BO.x(), payload.p_BO.y()}},
+          {"overhang_m", {payload.overhang.x(), payload.overhang.y()}}};
 }
 
 nlohmann::ordered_json OrNull(double value) {
@@ -57,15 +75,15 @@ nlohmann::ordered_json OrNull(double value) {
 
 }  // namespace
 
-std::string ClosedFormText(const std::vector<MotionBounds>& bounds, bool is_assumed) {
+std::string ClosedFormText(const ClosedForms& forms, bool is_assumed) {
   std::vector<std::vector<std::string>> rows{
       {"motion", "closed form", OwnHeading(is_assumed), "why"}};
-  for (const MotionBounds& motion : bounds) {
+  for (const MotionBounds& motion : forms.weakest) {
     rows.push_back({motion.motion, Amount(motion.closed_form, motion),
                     Amount(motion.robots_own, motion), motion.stated});
   }
   return "closed forms: the model as it is, on an even floor and a base that follows exactly\n" +
-         FormatTable(rows);
+         FormatTable(rows) + OverhangText(forms.payloads);
 }
 
 std::string LimitsText(const LimitsReport& report) {
@@ -159,8 +177,11 @@ nlohmann::ordered_json ToJson(const LimitsReport& report) {
     limits.back()["check_falls"] = limit.check->falls_at;
     if (limit.check->falls_above) limits.back()["check_falls_above"] = *limit.check->falls_above;
   }
+  nlohmann::ordered_json payloads = nlohmann::ordered_json::array();
+  for (const PayloadSupport& payload : report.payloads) payloads.push_back(ToJson(payload));
   return {{"object", report.request.object},
           {"model", report.model},
+          {"payloads", payloads},
           {"robot", report.robot},
           {"controller_assumed", report.request.is_controller_assumed},
           {"assumed", report.assumed},

@@ -110,7 +110,7 @@ class LimitFinder {
         setup_(setup),
         crew_(crew),
         controller_(setup.scene->robot.profile.base_controller),
-        bounds_(ClosedFormLimits(request.object, setup)),
+        forms_(ClosedFormLimits({request.object}, setup)),
         stage_(MakeDriveStage(setup, request.object, request.command_period)) {}
 
   std::optional<LimitsReport> Find() {
@@ -123,6 +123,7 @@ class LimitFinder {
     report_.world_hash = setup_.world_hash;
     report_.robot_hash = setup_.robot_hash;
     report_.assumed = setup_.scene->robot.assumed;
+    report_.payloads = forms_.payloads;
     report_.physics_hash = setup_.physics_hash;
     report_.is_omnidirectional = controller_.drive == robot::Drive::kOmnidirectional;
     report_.num_directions = report_.is_omnidirectional ? kDirections : 1;
@@ -137,10 +138,10 @@ class LimitFinder {
  private:
   std::vector<Motion> Motions() const {
     MotionBounds together{"together", "of each", 1.0, std::numeric_limits<double>::infinity(), {}};
-    return {{bounds_.at(0), SpeedDrives()},
-            {bounds_.at(1), AccelerationDrives()},
-            {bounds_.at(2), DecelerationDrives()},
-            {bounds_.at(3), TurningDrives()},
+    return {{forms_.weakest.at(0), SpeedDrives()},
+            {forms_.weakest.at(1), AccelerationDrives()},
+            {forms_.weakest.at(2), DecelerationDrives()},
+            {forms_.weakest.at(3), TurningDrives()},
             {std::move(together), TogetherDrives()}};
   }
 
@@ -275,7 +276,7 @@ class LimitFinder {
   const imagination::ImaginationSetup& setup_;
   const base::Crew& crew_;
   const robot::BaseControllerParams& controller_;
-  const std::vector<MotionBounds> bounds_;
+  const ClosedForms forms_;
   const DriveStage stage_;
   LimitsReport report_;
 };

@@ -8,6 +8,7 @@
 
 #include "base/parallel.h"
 #include "hires/imagination/imagination_setup.h"
+#include "reports/limits/payload_support.h"
 
 // How fast, how suddenly and how sharply a robot may drive so that what stands on its tray stays
 // there. docs/notes_limits.md says how it is found and what it was compared with.
@@ -38,6 +39,13 @@ struct MotionBounds {
   std::string stated;       ///< what the closed form speaks of: "tips", "slides", ...
 };
 
+/// Closed forms of speed, acceleration, deceleration and turning, in this order.
+struct ClosedForms {
+  std::vector<PayloadSupport> payloads;
+  std::vector<std::vector<MotionBounds>> of_each;  ///< of the payloads, in their order
+  std::vector<MotionBounds> weakest;               ///< of each motion the least of them
+};
+
 /// One motion, as far as it may go.
 struct MotionLimit : MotionBounds {
   double value{0.0};  ///< largest on a scale of steps of 3 % at which nothing fell
@@ -58,6 +66,7 @@ struct LimitsReport {
   double min_turning_radius{0.0};        ///< [m] of a car-like base; 0: it turns on the spot
   double own_angular_acceleration{0.0};  ///< [rad/s^2] at which the base begins and ends to turn
   std::vector<std::string> assumed{};    ///< of the robot, as Robot::assumed
+  std::vector<PayloadSupport> payloads{};
   double simulated_seconds{0.0};
   double wall_seconds{0.0};  ///< set by who asked; 0: unknown
 
@@ -70,12 +79,12 @@ struct LimitsReport {
 /// [Wilks 1941, Ann. Math. Stat. 12:91-96]. Each motion has truths of its own.
 int NumTruths(double max_fall);
 
-/// Closed forms of speed, acceleration, deceleration and turning, in this order: at once, as
-/// nothing is played.
-/// @throws base::ConfigError: no such object, a robot without a tray, an object that cannot stand,
-/// a controller that moves nothing.
-std::vector<MotionBounds> ClosedFormLimits(const std::string& object,
-                                           const imagination::ImaginationSetup& setup);
+/// Nothing is simulated. A base tips its payload in the directions in which it drives: forward and
+/// backward, or any (the weakest counts); turning acts as the payload's place on the tray says. A
+/// sudden stop lets it topple, or slide for `setup.standing.slide`: v = sqrt(2 s mu g).
+/// @throws base::ConfigError as SupportsOnTray(), and for a controller that moves nothing.
+ClosedForms ClosedFormLimits(const std::vector<std::string>& objects,
+                             const imagination::ImaginationSetup& setup);
 
 /// Looks for limits of all motions. The same bits for any number of threads.
 /// @param setup  whose world only lends its gravity: the floor is empty.
@@ -86,9 +95,9 @@ std::optional<LimitsReport> FindLimits(const LimitsRequest& request,
                                        const imagination::ImaginationSetup& setup,
                                        const base::Crew& crew);
 
-/// For people: the closed forms beside what the base's controller allows.
+/// For people: the closed forms beside what the base's controller allows, and overhangs.
 /// @param is_assumed  no file says what that controller allows.
-std::string ClosedFormText(const std::vector<MotionBounds>& bounds, bool is_assumed);
+std::string ClosedFormText(const ClosedForms& forms, bool is_assumed);
 /// For people: a table, and what it rests on.
 std::string LimitsText(const LimitsReport& report);
 /// To be pasted: the parameters of move_base's DWAPlannerROS, or for a car-like base

@@ -101,7 +101,7 @@ int RunLimitsVerb(const LimitsOptions& options, const std::string& package_folde
   request.check_truths = options.check_truths;
   // Whoever asks reads these while the rest is played.
   std::cout << AssumedText(setup.scene->robot)
-            << reports::ClosedFormText(reports::ClosedFormLimits(request.object, setup),
+            << reports::ClosedFormText(reports::ClosedFormLimits({request.object}, setup),
                                        request.is_controller_assumed)
             << '\n'
             << std::flush;
