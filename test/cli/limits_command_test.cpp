@@ -50,7 +50,7 @@ class FlushedOutput : private std::stringbuf {
 
 TEST(LimitsCommandTest, ClosedFormsAreShownBeforeTheFirstDrive) {
   LimitsOptions options;
-  options.object = "peppermill1";
+  options.payloads = {"peppermill1"};
   options.threads = 1;
   options.quiet = true;
   const FlushedOutput output;
@@ -144,6 +144,17 @@ TEST(LimitsCommandTest, ATrayWhoseMiddleIsTakenCarriesBesideIt) {
   EXPECT_THAT(
       Limits({"--object", "coffee_cup", "--robot", bare}).err,
       AllOf(HasSubstr("deep in 'lidar'"), HasSubstr("object_on_tray"), HasSubstr("m of 'tray'")));
+}
+
+TEST(LimitsCommandTest, BadObjectsAreNamedAndTheOthersAnswered) {
+  const TemporaryFolder folder;
+  const std::string bad = folder.Write("bad.yaml", "{shape: cylinder, radius: -1, height: 0.2}");
+  const Ended ended = Limits({"--object", "peppermill1", "--object", "pepermil", "--object", bad,
+                              "--object", "PEPPERMILL1"});
+  EXPECT_EQ(ended.code, 1);
+  EXPECT_THAT(ended.err,
+              AllOf(HasSubstr("pepermil"), HasSubstr("bad.yaml"), HasSubstr("named twice")));
+  EXPECT_THAT(ended.out, HasSubstr("At each limit peppermill1 falls in none"));
 }
 
 TEST(LimitsCommandTest, BadInputIsToldBeforeAnythingIsPlayed) {

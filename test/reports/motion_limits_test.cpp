@@ -18,7 +18,7 @@ using testing::HasSubstr;
 
 constexpr double kScaleStep = 0.03;  // a limit lies so far below what nothing bears
 constexpr double kModel = 0.002;     // by so much the model's numbers are rounded
-constexpr double kGravity = 9.8;    // [m/s^2] of the world of config/scene.yaml
+constexpr double kGravity = 9.8;     // [m/s^2] of the world of config/scene.yaml
 const physics::UprightCylinder kMill{0.037, 0.274, 0.140};  // peppermill1
 
 imagination::ImaginationSetup SetupWith(
@@ -45,7 +45,7 @@ void MakeIdeal(robot::BaseControllerParams* controller) {
 
 LimitsRequest Mill(double max_fall) {
   LimitsRequest request;
-  request.object = "peppermill1";
+  request.objects = {"peppermill1"};
   request.max_fall = max_fall;
   return request;
 }
@@ -191,8 +191,9 @@ TEST(MotionLimitsTest, TurningDoesNotPushWhatStandsOverTheBasesCentre) {
   MakeIdeal(&scene.robot.profile.base_controller);
   scene.X_BO.translation.head<2>().setZero();
   setup.scene = std::make_shared<const simulation::Scene>(scene);
-  EXPECT_NE(ClosedFormLimits({"peppermill1"}, setup).weakest[3].stated.find("turning does not push it"),
-            std::string::npos);
+  EXPECT_NE(
+      ClosedFormLimits({"peppermill1"}, setup).weakest[3].stated.find("turning does not push it"),
+      std::string::npos);
 }
 
 TEST(MotionLimitsTest, ACarTurnsRoundItsSmallestCircle) {
@@ -215,14 +216,14 @@ TEST(MotionLimitsTest, ACarTurnsRoundItsSmallestCircle) {
   EXPECT_THAT(LimitsYaml(*report),
               AllOf(HasSubstr("TebLocalPlannerROS:"), HasSubstr("max_vel_y: 0\n"),
                     HasSubstr("min_turning_radius: 0.5\n")));
-  EXPECT_EQ(report->num_directions, 1);
+  EXPECT_EQ(report->num_directions, 2);
 }
 
 TEST(MotionLimitsTest, WhatStandsFirmlyIsAskedForAsFarAsTheWheelsBringTheBase) {
   const auto casters = SetupWith(nullptr, "");  // at full speed and turning, they slip
   for (const std::string object : {"coffee_cup1", "bowl1"}) {
     LimitsRequest request = Mill(0.3);
-    request.object = object;
+    request.objects = {object};
     const auto report = FindLimits(request, casters, {2, {}, {}});
     ASSERT_TRUE(report) << object;
     EXPECT_GT(report->Of("together").value, 0.0) << object;
@@ -269,7 +270,8 @@ TEST(MotionLimitsTest, ClosedFormUsesTheDirectionOfTravel) {
   simulation::Scene scene = *setup.scene;
   scene.robot.profile.base_controller.drive = robot::Drive::kOmnidirectional;
   setup.scene = std::make_shared<const simulation::Scene>(scene);
-  EXPECT_NEAR(ClosedFormLimits({"deep"}, setup).weakest[1].closed_form, kGravity * 0.05 / 0.30, 1e-9);
+  EXPECT_NEAR(ClosedFormLimits({"deep"}, setup).weakest[1].closed_form, kGravity * 0.05 / 0.30,
+              1e-9);
 }
 
 TEST(MotionLimitsTest, ClosedFormOfTurningFollowsThePositionOnTheTray) {
@@ -334,6 +336,66 @@ TEST(MotionLimitsTest, LegsNextToThePlateAreRefusedWithTheReason) {
   }
 }
 
+TEST(MotionLimitsTest, SlideOfTheStopIsNotOffsetByTheApproach) {
+  const hires::test_support::TemporaryFolder folder;
+  const std::string slick = folder.Write(
+      "slick.yaml", "{shape: cylinder, radius: 0.1, height: 0.04, mass: 1.0, friction: 0.05}");
+  auto setup = PlateSetup(folder, {slick});
+  LimitsRequest request;
+  request.objects = {"slick"};
+  request.max_fall = 0.5;
+  const auto report = FindLimits(request, setup, {});
+  ASSERT_TRUE(report);
+  // v = sqrt(2 s mu g): a slower approach must not make it slide farther than 0.10 m in the stop.
+  const double speed = std::sqrt(2.0 * 0.10 * 0.05 * kGravity);
+  EXPECT_NEAR(report->Of("speed").closed_form, speed, 1e-6);
+  EXPECT_LE(report->Of("speed").value, speed * 1.005);
+  EXPECT_GT(report->Of("speed").value, (1.0 - 2.0 * kScaleStep) * speed);
+  EXPECT_LE(report->Of("speed").slide, 0.10);
+  ASSERT_TRUE(report->careful && report->careful->value);
+  const double careful = std::sqrt(2.0 * 0.02 * 0.05 * kGravity);
+  EXPECT_LE(*report->careful->value, careful * 1.005);
+  EXPECT_GT(*report->careful->value, (1.0 - 3.0 * kScaleStep) * careful);
+  EXPECT_THAT(LimitsText(*report),
+              AllOf(HasSubstr("slides at most 0.1 m"), HasSubstr("at any speed"),
+                    HasSubstr("a faster robot has 0.490 m/s^2 (mu g)"),
+                    HasSubstr("slide of at most 0.02 m")));
+  EXPECT_THAT(LimitsYaml(*report), HasSubstr("slides at every start"));
+  setup.standing.slide = 0.02;
+  const auto strict = FindLimits(request, setup, {});
+  ASSERT_TRUE(strict);
+  EXPECT_FALSE(strict->careful);
+  EXPECT_LE(strict->Of("speed").value, careful * 1.005);
+}
+
+TEST(MotionLimitsTest, SeveralObjectsHaveTheWeakestOnesClosedForms) {
+  const hires::test_support::TemporaryFolder folder;
+  const std::string low = BoxFile(folder, "low", "depth: 0.06, width: 0.06, height: 0.06");
+  const std::string tall = BoxFile(folder, "tall", "depth: 0.06, width: 0.06, height: 0.30");
+  const auto setup = PlateSetup(folder, {low, tall});
+  const ClosedForms forms = ClosedFormLimits({"low", "tall"}, setup);
+  ASSERT_EQ(forms.of_each.size(), 2u);
+  EXPECT_EQ(forms.weakest[1].closed_form, forms.of_each[1][1].closed_form);
+  EXPECT_THAT(forms.weakest[1].stated, HasSubstr("tall: tips"));
+  EXPECT_THAT(ClosedFormText(forms, false), HasSubstr("together on the tray"));
+  const auto both = FindLimits({{"low", "tall"}, false, 0.5}, setup, {});
+  ASSERT_TRUE(both);
+  EXPECT_EQ(both->payloads.size(), 2u);
+  EXPECT_NEAR(both->Of("speed").closed_form, forms.of_each[1][0].closed_form, 1e-12);
+}
+
+TEST(MotionLimitsTest, ObjectsThatOverlapAreNamed) {
+  const hires::test_support::TemporaryFolder folder;
+  const std::string a = BoxFile(folder, "wide_a", "depth: 0.35, width: 0.35, height: 0.1");
+  const std::string b = BoxFile(folder, "wide_b", "depth: 0.35, width: 0.35, height: 0.1");
+  try {
+    ClosedFormLimits({"wide_a", "wide_b"}, PlateSetup(folder, {a, b}));
+    FAIL() << "no error";
+  } catch (const base::ConfigError& error) {
+    EXPECT_THAT(error.what(), AllOf(HasSubstr("'wide_a' and 'wide_b' overlap")));
+  }
+}
+
 TEST(MotionLimitsTest, EndsWhenItIsCancelled) {
   EXPECT_FALSE(FindLimits(Mill(0.3), SetupWith(nullptr, ""), {2, [] { return true; }, {}}));
 }
@@ -341,7 +403,7 @@ TEST(MotionLimitsTest, EndsWhenItIsCancelled) {
 TEST(MotionLimitsTest, SaysWhatCannotBeCarried) {
   const auto error_of = [](const std::string& object, const imagination::ImaginationSetup& setup) {
     LimitsRequest request = Mill(0.5);
-    request.object = object;
+    request.objects = {object};
     try {
       FindLimits(request, setup, {});
     } catch (const base::ConfigError& error) {

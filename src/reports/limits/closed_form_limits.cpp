@@ -111,9 +111,9 @@ class CarriedLoad {
     const std::string on_arc_how = HowItGives(outward) + " outward on the arc";
     const std::string stopped_how = HowItBearsASuddenStop(stop);
     bounds.closed_form = std::min(on_arc, stopped);
-    bounds.stated = fmt::format("{}, {:.2f} m from {}", stopped < on_arc ? stopped_how : on_arc_how,
-                                arm, IsCar() ? "the middle of the smallest circle"
-                                             : "the base's centre");
+    bounds.stated =
+        fmt::format("{}, {:.2f} m from {}", stopped < on_arc ? stopped_how : on_arc_how, arm,
+                    IsCar() ? "the middle of the smallest circle" : "the base's centre");
     if (std::isfinite(stopped) && !payload_.rolls) {
       bounds.stated += stopped < on_arc
                            ? fmt::format("; {} from {:.3f} rad/s", on_arc_how, on_arc)

@@ -45,9 +45,8 @@ const char* OwnHeading(bool is_assumed) {
 
 /// What these limits say nothing of.
 const std::vector<std::string>& LeftOut() {
-  static const std::vector<std::string> texts{
-      "whether the robot itself tips over", "liquids that slosh",
-      "payloads that swing"};
+  static const std::vector<std::string> texts{"whether the robot itself tips over",
+                                              "liquids that slosh", "payloads that swing"};
   return texts;
 }
 
@@ -63,6 +62,18 @@ std::string OverhangText(const std::vector<PayloadSupport>& payloads) {
   return text;
 }
 
+/// Where several payloads are on the tray.
+std::string PositionText(const std::vector<PayloadSupport>& payloads) {
+  std::vector<std::string> places;
+  for (const PayloadSupport& payload : payloads) {
+    places.push_back(
+        fmt::format("{} at ({:.2f}, {:.2f}) m", payload.name, payload.p_BO.x(), payload.p_BO.y()));
+  }
+  return places.size() < 2
+             ? ""
+             : "together on the tray (base frame): " + base::Join(places, ", ") + '\n';
+}
+
 nlohmann::ordered_json ToJson(const PayloadSupport& payload) {
   return {{"object", payload.name},
           {"position_m", {payload.p_BO.x(), payload.p_BO.y()}},
@@ -71,6 +82,50 @@ nlohmann::ordered_json ToJson(const PayloadSupport& payload) {
 
 nlohmann::ordered_json OrNull(double value) {
   return std::isinf(value) ? nlohmann::ordered_json() : nlohmann::ordered_json(value);
+}
+
+std::string Names(const LimitsRequest& request) { return base::Join(request.objects, ", "); }
+
+/// Whether a limit was found at the speed limit, and another one holds at any speed.
+bool HoldsUpToASpeed(const MotionBounds& limit) {
+  return limit.motion == "acceleration" || limit.motion == "deceleration";
+}
+
+/// Up to which speed acceleration and deceleration hold, and what a faster robot has.
+std::string ValidityText(const LimitsReport& report) {
+  const MotionLimit& limit = report.Of("deceleration");
+  const double any = limit.closed_form;
+  return fmt::format(
+      "acceleration, deceleration: hold up to the speed found ({}); a faster robot has {} ({}), "
+      "for the model as it is.\n",
+      Amount(report.Of("speed").value, report.Of("speed")), Amount(any, limit),
+      any < 1e-9                                          ? "it rolls"
+      : any < report.SlidingAcceleration() * (1.0 - 1e-9) ? "g b/c"
+                                                          : "mu g");
+}
+
+/// When a slide counts, and the speed at which it stays small.
+std::string SlideText(const LimitsReport& report) {
+  std::string text = fmt::format(
+      "slide: a payload counts as kept while it slides at most {:g} m in one motion (--max-slide); "
+      "the largest at each limit is in the table.\n",
+      report.max_slide);
+  if (!report.careful) return text;
+  const MotionLimit& speed = report.Of("speed");
+  return text + (report.careful->value
+                     ? fmt::format("speed for a slide of at most {:g} m: {}.\n",
+                                   report.careful->slide, Amount(*report.careful->value, speed))
+                     : fmt::format("speed for a slide of at most {:g} m: less than a 30th of the "
+                                   "speed limit.\n",
+                                   report.careful->slide));
+}
+
+/// Empty, or that a payload slides whenever the base uses this limit.
+std::string SlidesAtEveryStart(const char* what, double acceleration, double slides) {
+  if (acceleration <= slides) return "";
+  return fmt::format(
+      "{} {:g} m/s^2 is above mu g = {:.3f} m/s^2: the payload slides at every start and stop.\n",
+      what, acceleration, slides);
 }
 
 }  // namespace
@@ -83,34 +138,37 @@ std::string ClosedFormText(const ClosedForms& forms, bool is_assumed) {
                     Amount(motion.robots_own, motion), motion.stated});
   }
   return "closed forms: the model as it is, on an even floor and a base that follows exactly\n" +
-         FormatTable(rows) + OverhangText(forms.payloads);
+         FormatTable(rows) + PositionText(forms.payloads) + OverhangText(forms.payloads);
 }
 
 std::string LimitsText(const LimitsReport& report) {
   const int num_checked = report.request.check_truths;
-  std::vector<std::vector<std::string>> rows{
-      {"motion", "limit", OwnHeading(report.request.is_controller_assumed), "closed form"}};
+  std::vector<std::vector<std::string>> rows{{"motion", "limit",
+                                              OwnHeading(report.request.is_controller_assumed),
+                                              "closed form", "at any speed", "slide"}};
   if (num_checked > 0) rows[0].push_back(fmt::format("falls of {} new, 10 % above", num_checked));
   for (const MotionLimit& limit : report.limits) {
     const bool is_share = limit.motion == "together";
     rows.push_back({limit.motion, Amount(limit.value, limit),
                     is_share ? "-" : Amount(limit.robots_own, limit),
-                    Amount(limit.closed_form, limit)});
+                    Amount(limit.closed_form, limit),
+                    HoldsUpToASpeed(limit) ? Amount(limit.closed_form, limit) : "-",
+                    fmt::format("{:.3f} m", limit.slide)});
     if (limit.check) rows.back().push_back(Falls(*limit.check));
   }
   std::string text =
       fmt::format("simulated, {} truths for each motion\n{}", report.num_truths, FormatTable(rows));
   text += fmt::format(
       "\nAt each limit {} falls in none of {} simulated truths: at least {:g} % keep it (95 % "
-      "confidence, for each motion).\n"
+      "confidence, for each motion).\n{}{}"
       "speed, turning: from where the base may stop by itself, as when commands cease. together: "
       "on an arc, speeding up, then braking, or left without commands.\n"
       "truths: same (the uncertainty that imagination has: {}); empty floor; {}.\n",
-      report.request.object, report.num_truths, 100.0 * (1.0 - report.request.max_fall),
-      report.uncertainty,
-      report.num_directions > 1
+      Names(report.request), report.num_truths, 100.0 * (1.0 - report.request.max_fall),
+      ValidityText(report), SlideText(report), report.uncertainty,
+      report.num_directions > 2
           ? fmt::format("driving into {} directions in turn", report.num_directions)
-          : "driving forward");
+          : "driving forward and backward in turn");
   if (report.request.is_controller_assumed) {
     text +=
         "robot's own: ASSUMED to be a PR2's, as no file tells how this base is controlled; "
@@ -136,7 +194,7 @@ std::string LimitsYaml(const LimitsReport& report) {
   std::string text = fmt::format(
       "# {} on the tray of {}: in simulation at least {:g} % of drives keep it (95 % confidence),\n"
       "# uncertainty {}, seed {}. For controller_frequency: {:g}.",
-      report.request.object, report.robot, 100.0 * (1.0 - report.request.max_fall),
+      Names(report.request), report.robot, 100.0 * (1.0 - report.request.max_fall),
       report.uncertainty, report.request.seed, 1.0 / report.request.command_period);
   text +=
       report.min_turning_radius > 0.0
@@ -148,6 +206,12 @@ std::string LimitsYaml(const LimitsReport& report) {
     text +=
         "# The base's controller is ASSUMED: limits and accelerations are cut off at a PR2's.\n";
   }
+  text += fmt::format(
+      "# acc_lim_x holds up to {:g} m/s; any speed: {}. Slides of up to {:g} m count as kept.\n",
+      speed, Amount(report.Of("deceleration").closed_form, report.Of("deceleration")),
+      report.max_slide);
+  const std::string slides = SlidesAtEveryStart("acc_lim_x", linear, report.SlidingAcceleration());
+  if (!slides.empty()) text += "# " + slides;
   text += "# Left out: " + base::Join(LeftOut(), "; ") + ".\n";
   if (report.min_turning_radius > 0.0) {
     return text + CarYaml(speed, part(report.Of("turning").value), linear,
@@ -172,15 +236,26 @@ nlohmann::ordered_json ToJson(const LimitsReport& report) {
                       {"limit", limit.value},
                       {"robots_own", limit.robots_own},
                       {"closed_form", OrNull(limit.closed_form)},
-                      {"closed_form_states", limit.stated}});
+                      {"closed_form_states", limit.stated},
+                      {"slide_m", limit.slide}});
+    if (HoldsUpToASpeed(limit)) {
+      limits.back()["up_to_speed"] = report.Of("speed").value;
+      limits.back()["at_any_speed"] = OrNull(limit.closed_form);
+    }
     if (!limit.check) continue;
     limits.back()["check_falls"] = limit.check->falls_at;
     if (limit.check->falls_above) limits.back()["check_falls_above"] = *limit.check->falls_above;
   }
   nlohmann::ordered_json payloads = nlohmann::ordered_json::array();
   for (const PayloadSupport& payload : report.payloads) payloads.push_back(ToJson(payload));
-  return {{"object", report.request.object},
-          {"model", report.model},
+  nlohmann::ordered_json careful;
+  if (report.careful) {
+    careful = {{"max_slide_m", report.careful->slide},
+               {"speed", report.careful->value ? nlohmann::ordered_json(*report.careful->value)
+                                               : nlohmann::ordered_json()}};
+  }
+  return {{"object", Names(report.request)},
+          {"model", base::Join(report.models, ", ")},
           {"payloads", payloads},
           {"robot", report.robot},
           {"controller_assumed", report.request.is_controller_assumed},
@@ -189,6 +264,9 @@ nlohmann::ordered_json ToJson(const LimitsReport& report) {
           {"directions", report.num_directions},
           {"own_angular_acceleration", report.own_angular_acceleration},
           {"max_fall", report.request.max_fall},
+          {"max_slide_m", report.max_slide},
+          {"sliding_acceleration", report.SlidingAcceleration()},
+          {"careful_speed", careful},
           {"confidence", 0.95},
           {"seed", report.request.seed},
           {"command_period_s", report.request.command_period},

@@ -21,9 +21,12 @@ constexpr double kStill = 0.004;   // [rad] ... by more than this
 constexpr double kFollows = 0.05;  // [m/s], [rad/s] and ...
 constexpr double kSlips =
     0.1;  // ... of what is commanded: so far off a base follows it, as wheels slip
-constexpr double kLongest = 60.0;  // [s] for the base to come to what is commanded
-constexpr double kNoNearer = 1.0;  // [s] after which it is as near as it comes ...
-constexpr double kNearer = 0.01;   // [m/s], [rad/s] ... where it came no nearer by so much
+constexpr double kLongest = 60.0;   // [s] for the base to come to what is commanded
+constexpr double kNoNearer = 1.0;   // [s] after which it is as near as it comes ...
+constexpr double kLevel = 0.05;     // [rad] what leans more is tipping, and its origin moves
+constexpr double kAtRest = 2e-4;    // [m] that it moves on the tray in one period of commands
+constexpr double kUntilRest = 5.0;  // [s]
+constexpr double kNearer = 0.01;    // [m/s], [rad/s] ... where it came no nearer by so much
 enum DriveStreams : std::uint64_t { kDriveTruth, kDriveSimulator };
 
 /// The next command on the way to a velocity.
@@ -46,19 +49,58 @@ class Driver {
       : stage_(stage),
         drive_(drive),
         simulator_(*simulator),
-        watch_(stage.setup->standing),
+        payloads_(stage.start.world.objects.size(), Payload(stage.setup->standing)),
         steps_per_look_(world::StepsPerLook(simulator->time_step())) {}
 
   DriveOutcome Play() {
+    MarkPlaces();
     Advance(stage_.setup->rollout.settling_time, Twist2{});
-    for (const DriveStep& step : drive_) Follow(step);
+    for (std::size_t i = 0; i < drive_.size(); ++i) {
+      if (i > 0) AwaitRest(false);
+      MarkPlaces();
+      Follow(drive_[i]);
+    }
     last_shake_ = last_move_ = simulator_.time();  // what comes now is not known to be quiet
     const bool is_silent = !drive_.empty() && drive_.back().is_silent;
     while (!IsOver()) Command(is_silent);
-    return {watch_.detector().falls() > 0, simulator_.time()};
+    AwaitRest(is_silent);
+    DriveOutcome outcome{{}, {}, simulator_.time()};
+    for (const Payload& payload : payloads_) {
+      outcome.fell.push_back(IsDown(payload));
+      outcome.slide.push_back(payload.slide);
+    }
+    return outcome;
   }
 
  private:
+  struct Payload {
+    explicit Payload(const world::StandingCriterion& criterion) : watch(criterion) {}
+    simulation::FallWatch watch;
+    geometry::Pose3 X_BO;  // when the step of the drive began
+    double slide{0.0};     // [m] since then, the largest of all steps
+  };
+
+  geometry::Pose3 PlaceOf(std::size_t i) const {
+    return simulator_.X_MB().Inverse() * simulator_.PoseOf(static_cast<int>(i));
+  }
+
+  void MarkPlaces() {
+    for (std::size_t i = 0; i < payloads_.size(); ++i) payloads_[i].X_BO = PlaceOf(i);
+  }
+
+  void AwaitRest(bool is_silent) {
+    const double end = simulator_.time() + kUntilRest;
+    for (bool rests = false; !rests && simulator_.time() < end && !is_down();) {
+      std::vector<geometry::Pose3> before;
+      for (std::size_t i = 0; i < payloads_.size(); ++i) before.push_back(PlaceOf(i));
+      Command(is_silent);
+      rests = true;
+      for (std::size_t i = 0; i < payloads_.size(); ++i) {
+        rests &= world::DepartureFrom(before[i], PlaceOf(i)).slide < kAtRest;
+      }
+    }
+  }
+
   void Follow(const DriveStep& step) {
     if (step.is_silent) {
       V_B_ = {};
@@ -124,14 +166,25 @@ class Driver {
   }
 
   void Look() {
-    watch_.Look(simulator_, 0);
-    if (geometry::TiltOf(simulator_.PoseOf(0).rotation) > kStill) {
-      last_shake_ = simulator_.time();
+    for (std::size_t i = 0; i < payloads_.size(); ++i) {
+      Payload& payload = payloads_[i];
+      payload.watch.Look(simulator_, static_cast<int>(i));
+      const double tilt = geometry::TiltOf(simulator_.PoseOf(static_cast<int>(i)).rotation);
+      if (tilt > kStill && !IsDown(payload)) last_shake_ = simulator_.time();
+      if (tilt > kLevel || IsDown(payload)) continue;
+      payload.slide = std::max(payload.slide, world::DepartureFrom(payload.X_BO, PlaceOf(i)).slide);
     }
     if (!FollowsCommand()) last_move_ = simulator_.time();
   }
 
-  bool is_down() const { return watch_.detector().falls() > 0; }
+  bool IsDown(const Payload& payload) const {
+    return payload.watch.detector().falls() > 0 || payload.slide > stage_.setup->standing.slide;
+  }
+  bool is_down() const {
+    const auto down = [this](const Payload& payload) { return IsDown(payload); };
+    return stage_.ends_at_first_fall ? std::any_of(payloads_.begin(), payloads_.end(), down)
+                                     : std::all_of(payloads_.begin(), payloads_.end(), down);
+  }
   /// Once the base does as told nothing is added to what shakes: `aftermath` shows what becomes of
   /// it.
   bool IsOver() const {
@@ -143,25 +196,33 @@ class Driver {
   const DriveStage& stage_;
   const LoadDrive& drive_;
   simulation::RobotSimulator& simulator_;
-  simulation::FallWatch watch_;
+  std::vector<Payload> payloads_;
   const long steps_per_look_;
   long steps_{0};
   Twist2 V_B_;              // the last that was commanded
-  double last_shake_{0.0};  // [s] of the load
+  double last_shake_{0.0};  // [s] of a payload
   double last_move_{0.0};   // [s] that the base was on its way to V_B_
 };
 
 }  // namespace
 
-DriveStage MakeDriveStage(const imagination::ImaginationSetup& setup, const std::string& object,
-                          double command_period) {
+bool DriveOutcome::AnyFell() const {
+  return std::find(fell.begin(), fell.end(), true) != fell.end();
+}
+
+double DriveOutcome::MaxSlide() const {
+  return slide.empty() ? 0.0 : *std::max_element(slide.begin(), slide.end());
+}
+
+DriveStage MakeDriveStage(const imagination::ImaginationSetup& setup,
+                          const std::vector<std::string>& objects, double command_period) {
   DriveStage stage;
   stage.setup = &setup;
   world::World floor = setup.scene->world;
   floor.statics.clear();
   stage.scene = simulation::MakeScene(std::move(floor), setup.scene->robot, setup.scene->memory,
                                       setup.scene->sight);
-  stage.start = imagination::StartOnTray(setup, {}, {object});
+  stage.start = imagination::StartOnTray(setup, {}, objects);
   stage.command_period = command_period;
   return stage;
 }

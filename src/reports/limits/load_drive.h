@@ -1,6 +1,7 @@
 #pragma once
 
 #include <memory>
+#include <string>
 #include <vector>
 
 #include "hires/geometry/pose.h"
@@ -22,25 +23,34 @@ struct DriveStep {
 };
 using LoadDrive = std::vector<DriveStep>;
 
-/// What became of the load.
+/// What became of the payloads, in the order in which they were named.
 struct DriveOutcome {
-  bool fell{false};
+  /// It fell, or slid by more than standing.slide in one step of the drive.
+  std::vector<bool> fell;
+  /// [m] The largest distance on the tray, level, from where it was when a step of the drive began.
+  std::vector<double> slide;
   double simulated{0.0};  ///< [s]
+
+  bool AnyFell() const;
+  double MaxSlide() const;  ///< [m]
 };
 
-/// Where drives with one load are played: an even, empty floor, the load alone on the tray.
+/// Where drives are played: an even, empty floor, the payloads alone on the tray.
 struct DriveStage {
   const imagination::ImaginationSetup* setup{nullptr};
   std::shared_ptr<const simulation::Scene> scene;
   imagination::StartState start;
-  double command_period{0.1};  ///< [s]
+  double command_period{0.1};     ///< [s]
+  bool ends_at_first_fall{true};  ///< false: when all payloads fell
 };
 
 /// @throws base::ConfigError as imagination::StartOnTray.
-DriveStage MakeDriveStage(const imagination::ImaginationSetup& setup, const std::string& object,
-                          double command_period);
+DriveStage MakeDriveStage(const imagination::ImaginationSetup& setup,
+                          const std::vector<std::string>& objects, double command_period);
 
-/// Plays the drive in one truth, until the load has fallen or nothing shakes any more.
+/// Plays the drive in one truth, until a payload has fallen or nothing shakes any more. Each step
+/// begins when the payloads have come to rest on the tray (for 5 s at most), so that what one step
+/// lets them slide does not offset what the next one does.
 /// @pre the last step that may fall short is followed by one that commands a stand, or nothing.
 /// @param rng  of the truth, and of what the simulator draws.
 DriveOutcome PlayDrive(const DriveStage& stage, const LoadDrive& drive, const base::Rng& rng);

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <functional>
 #include <limits>
+#include <map>
 #include <numeric>
 #include <utility>
 
@@ -14,6 +15,7 @@
 #include "hires/base/error.h"
 #include "hires/base/hash.h"
 #include "hires/base/rng.h"
+#include "hires/base/text.h"
 #include "hires/geometry/angles.h"
 #include "reports/limits/load_drive.h"
 
@@ -110,12 +112,14 @@ class LimitFinder {
         setup_(setup),
         crew_(crew),
         controller_(setup.scene->robot.profile.base_controller),
-        forms_(ClosedFormLimits({request.object}, setup)),
-        stage_(MakeDriveStage(setup, request.object, request.command_period)) {}
+        forms_(ClosedFormLimits(request.objects, setup)),
+        stage_(MakeDriveStage(setup, request.objects, request.command_period)) {}
 
   std::optional<LimitsReport> Find() {
     report_.request = request_;
-    report_.model = setup_.scene->world.RequireModel(setup_.ModelOf(request_.object))->name;
+    for (const std::string& object : request_.objects) {
+      report_.models.push_back(setup_.scene->world.RequireModel(setup_.ModelOf(object))->name);
+    }
     report_.robot = setup_.scene->robot.model.name;
     report_.uncertainty =
         setup_.uncertainty->quantities.empty() ? "none" : base::HexOf(setup_.uncertainty->hash);
@@ -125,8 +129,9 @@ class LimitFinder {
     report_.assumed = setup_.scene->robot.assumed;
     report_.payloads = forms_.payloads;
     report_.physics_hash = setup_.physics_hash;
-    report_.is_omnidirectional = controller_.drive == robot::Drive::kOmnidirectional;
-    report_.num_directions = report_.is_omnidirectional ? kDirections : 1;
+    SetDirections();
+    report_.max_slide = setup_.standing.slide;
+    report_.gravity = setup_.scene->world.gravity;
     report_.min_turning_radius = controller_.min_turning_radius;
     report_.own_angular_acceleration = controller_.limits.max_angular_acceleration;
     for (const Motion& motion : Motions()) {
@@ -136,6 +141,11 @@ class LimitFinder {
   }
 
  private:
+  void SetDirections() {
+    report_.is_omnidirectional = controller_.drive == robot::Drive::kOmnidirectional;
+    report_.num_directions = report_.is_omnidirectional ? kDirections : 2;
+  }
+
   std::vector<Motion> Motions() const {
     MotionBounds together{"together", "of each", 1.0, std::numeric_limits<double>::infinity(), {}};
     return {{forms_.weakest.at(0), SpeedDrives()},
@@ -159,15 +169,36 @@ class LimitFinder {
           "can "
           "be carried; put it elsewhere (object_on_tray: in the profile) or allow more with "
           "--max-fall",
-          request_.object, setup_.scene->robot.model.name, motion.motion, least, motion.unit));
+          base::Join(request_.objects, ", "), setup_.scene->robot.model.name, motion.motion, least,
+          motion.unit));
     }
     const double value = ValueAt(motion.robots_own, *step);
-    MotionLimit limit{motion, value, std::nullopt};
+    MotionLimit limit{motion, value, last_slide_, std::nullopt};
     if (request_.check_truths > 0) {
       limit.check = Check(motion, value);
       if (!limit.check) return false;
     }
+    if (motion.motion == "speed" && !FindCarefulSpeed(motion, limit)) return false;
+    values_[motion.motion] = value;
     report_.limits.push_back(std::move(limit));
+    return true;
+  }
+
+  /// @return false when cancelled.
+  bool FindCarefulSpeed(const Motion& speed, const MotionLimit& limit) {
+    CarefulSpeed careful;
+    if (report_.max_slide <= careful.slide) return true;
+    careful.value = limit.value;
+    if (limit.slide > careful.slide) {
+      const auto slides_at = [&](double value, const std::vector<int>& truths) {
+        return FallenAmong(speed, value, truths, careful.slide);
+      };
+      const auto step = Search(limit.value, report_.num_truths, slides_at).Run();
+      if (!step) return false;
+      careful.value = ValueAt(limit.value, *step);
+      if (*step > kLastStep) careful.value.reset();
+    }
+    report_.careful = careful;
     return true;
   }
 
@@ -185,8 +216,25 @@ class LimitFinder {
     return check;
   }
 
-  std::optional<std::vector<int>> FallenAmong(const Motion& motion, double value,
-                                              const std::vector<int>& truths) {
+  /// @param max_slide  [m] that counts as a fall, where it is smaller than standing.slide.
+  std::optional<std::vector<int>> FallenAmong(
+      const Motion& motion, double value, const std::vector<int>& truths,
+      double max_slide = std::numeric_limits<double>::infinity()) {
+    const auto outcomes = PlayTruths(motion, value, truths);
+    if (!outcomes) return std::nullopt;
+    std::vector<int> fallen;
+    last_slide_ = 0.0;
+    for (std::size_t i = 0; i < truths.size(); ++i) {
+      const DriveOutcome& outcome = (*outcomes)[i];
+      last_slide_ = std::max(last_slide_, outcome.MaxSlide());
+      if (outcome.AnyFell() || outcome.MaxSlide() > max_slide) fallen.push_back(truths[i]);
+    }
+    return fallen;
+  }
+
+  /// @return nothing when cancelled.
+  std::optional<std::vector<DriveOutcome>> PlayTruths(const Motion& motion, double value,
+                                                      const std::vector<int>& truths) {
     std::vector<DriveOutcome> outcomes(truths.size());
     const int num_tasks = static_cast<int>(truths.size());
     const auto work = [&](int task, const base::Advance& advance) {
@@ -195,32 +243,32 @@ class LimitFinder {
           2.0 * geometry::kPi * (truth % report_.num_directions) / report_.num_directions;
       outcomes[task] = PlayAll(motion.drives(value, direction),
                                base::Rng(request_.seed)
-                                   .Fork(static_cast<std::uint64_t>(report_.limits.size()))
+                                   .Fork(static_cast<std::uint64_t>(values_.size()))
                                    .Fork(static_cast<std::uint64_t>(truth)));
       advance(1.0);
     };
     base::Crew crew = crew_;
     crew.on_progress = nullptr;
     if (!base::DoInParallel(num_tasks, num_tasks, crew, work)) return std::nullopt;
-    std::vector<int> fallen;
-    for (int i = 0; i < num_tasks; ++i) {
-      report_.simulated_seconds += outcomes[i].simulated;
-      if (outcomes[i].fell) fallen.push_back(truths[i]);
-    }
+    for (const DriveOutcome& outcome : outcomes) report_.simulated_seconds += outcome.simulated;
     if (crew_.on_progress) {
-      crew_.on_progress(static_cast<double>(report_.limits.size()) / kNumMotions, 0.0);
+      crew_.on_progress(static_cast<double>(values_.size()) / kNumMotions, 0.0);
     }
-    return fallen;
+    return outcomes;
   }
 
   /// In one truth, until a drive loses the load.
   DriveOutcome PlayAll(const std::vector<LoadDrive>& drives, const base::Rng& rng) const {
     DriveOutcome all;
     for (const LoadDrive& drive : drives) {
-      const DriveOutcome one = PlayDrive(stage_, drive, rng);
-      all.simulated += one.simulated;
-      all.fell = one.fell;
-      if (all.fell) break;
+      DriveOutcome one = PlayDrive(stage_, drive, rng);
+      one.simulated += all.simulated;
+      for (std::size_t i = 0; i < all.fell.size(); ++i) {
+        one.fell[i] = one.fell[i] || all.fell[i];
+        one.slide[i] = std::max(one.slide[i], all.slide[i]);
+      }
+      all = std::move(one);
+      if (stage_.ends_at_first_fall && all.AnyFell()) break;
     }
     return all;
   }
@@ -247,12 +295,14 @@ class LimitFinder {
     };
   }
 
-  /// On the spot, or round the smallest circle of a car, as suddenly as the controller allows; then
-  /// commands cease.
+  /// On the spot, to the left or right, or round the smallest circle of a car, as suddenly as the
+  /// controller allows; then commands cease.
   Drives TurningDrives() const {
     return [sudden = sudden(), radius = controller_.min_turning_radius](
-               double w, double) -> std::vector<LoadDrive> {
-      return {{{{radius * w, 0.0, w}, radius * sudden, sudden, kTurningTime}, kSilence}};
+               double w, double direction) -> std::vector<LoadDrive> {
+      const double sense = direction < geometry::kPi ? 1.0 : -1.0;
+      const Twist2 turn{radius * w, 0.0, sense * w};
+      return {{{turn, radius * sudden, sudden, kTurningTime}, kSilence}};
     };
   }
 
@@ -267,7 +317,7 @@ class LimitFinder {
     };
   }
 
-  double Found(const std::string& motion) const { return report_.Of(motion).value; }
+  double Found(const std::string& motion) const { return values_.at(motion); }
 
   static constexpr int kDirections = 8;
   static constexpr int kNumMotions = 5;
@@ -279,6 +329,8 @@ class LimitFinder {
   const ClosedForms forms_;
   const DriveStage stage_;
   LimitsReport report_;
+  std::map<std::string, double> values_;  // of the motions that later ones build on
+  double last_slide_{0.0};                // [m] of the truths that were played last
 };
 
 }  // namespace
@@ -288,6 +340,14 @@ const MotionLimit& LimitsReport::Of(const std::string& motion) const {
                                   [&](const MotionLimit& limit) { return limit.motion == motion; });
   HIRES_CHECK(found != limits.end(), "limits are looked for in order");
   return *found;
+}
+
+double LimitsReport::SlidingAcceleration() const {
+  double least = std::numeric_limits<double>::infinity();
+  for (const PayloadSupport& payload : payloads) {
+    least = std::min(least, payload.SlidingAcceleration(gravity));
+  }
+  return least;
 }
 
 int NumTruths(double max_fall) {

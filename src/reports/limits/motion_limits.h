@@ -16,7 +16,8 @@ namespace hires::reports {
 
 /// What is looked for.
 struct LimitsRequest {
-  std::string object;                 ///< on the tray: an instance of the catalogue, or a model
+  /// Together on the tray (as imagination::StartOnTray): instances of the catalogue, or models.
+  std::vector<std::string> objects;
   bool is_controller_assumed{false};  ///< no file says what the base can do
   double max_fall{0.01};              ///< share of drives that may lose it, in (0, 1)
   double command_period{0.1};         ///< [s] between two velocities that a local planner commands
@@ -49,20 +50,29 @@ struct ClosedForms {
 /// One motion, as far as it may go.
 struct MotionLimit : MotionBounds {
   double value{0.0};  ///< largest on a scale of steps of 3 % at which nothing fell
+  double slide{0.0};  ///< [m] the largest of all truths at that value, in one step of a drive
   std::optional<LimitCheck> check;
+};
+
+/// A speed found with a smaller slide as failure.
+struct CarefulSpeed {
+  double slide{0.02};           ///< [m]
+  std::optional<double> value;  ///< [m/s]; none down to a 30th of the limit
 };
 
 /// What was found.
 struct LimitsReport {
   LimitsRequest request;
-  std::string model;  ///< of the object
+  std::vector<std::string> models;  ///< of the objects
   std::string robot;
   std::string uncertainty;          ///< "none", or hash of what was drawn from
   int num_truths{0};                ///< at none of them it falls below the limits
   std::vector<MotionLimit> limits;  ///< the last one is `together`
   std::uint64_t world_hash{0}, robot_hash{0}, physics_hash{0};
   bool is_omnidirectional{false};
-  int num_directions{1};  ///< of driving, evenly around; each truth drives into one of them
+  int num_directions{2};  ///< of driving, evenly around; each truth drives into one of them
+  double max_slide{0.1};  ///< [m] on the tray; more counts as a failure
+  std::optional<CarefulSpeed> careful;   ///< where max_slide is larger than its slide
   double min_turning_radius{0.0};        ///< [m] of a car-like base; 0: it turns on the spot
   double own_angular_acceleration{0.0};  ///< [rad/s^2] at which the base begins and ends to turn
   std::vector<std::string> assumed{};    ///< of the robot, as Robot::assumed
@@ -71,6 +81,9 @@ struct LimitsReport {
   double wall_seconds{0.0};  ///< set by who asked; 0: unknown
 
   const MotionLimit& Of(const std::string& motion) const;
+  /// [m/s^2] mu g of the most slippery payload.
+  double SlidingAcceleration() const;
+  double gravity{9.81};  ///< [m/s^2]
 };
 
 /// How many truths of which none may lose the load: the smallest n with (1 - max_fall)^n <= 0.05.

@@ -26,7 +26,7 @@ using geometry::Polygon;
 
 constexpr double kUnlimited = std::numeric_limits<double>::infinity();
 constexpr double kContactBand = 0.001;  // [m] unevenness of a base, as in navigation::LoadOf
-constexpr double kSameLevel = 0.006;        // [m] surfaces that differ by less carry together
+constexpr double kSameLevel = 0.006;    // [m] surfaces that differ by less carry together
 
 double Cross(const Vector2d& a, const Vector2d& b) { return a.x() * b.y() - a.y() * b.x(); }
 
@@ -197,10 +197,9 @@ PayloadSupport SupportOf(const simulation::Scene& scene, const world::ObjectStat
   support.com_height = load.com_height;
   support.friction = std::min(load.friction, surface.friction);
   const Eigen::Matrix2d R = Eigen::Rotation2Dd(X_BO.yaw).toRotationMatrix();
-  support.gyration = R *
-                     (model.mass_properties.I_BBcm.topLeftCorner<2, 2>() /
-                      model.mass_properties.mass) *
-                     R.transpose();
+  support.gyration =
+      R * (model.mass_properties.I_BBcm.topLeftCorner<2, 2>() / model.mass_properties.mass) *
+      R.transpose();
   support.rolls = Rolls(model);
   if (!surface.outlines.empty()) support.overhang = OverhangOf(model, X_BO, surface);
   return support;

@@ -2,7 +2,9 @@
 
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <string>
+#include <vector>
 
 namespace CLI {
 class App;
@@ -12,7 +14,9 @@ namespace hires::cli {
 
 /// What was typed behind `hires limits`.
 struct LimitsOptions {
-  std::string object, robot, objects, uncertainty, scene, json, yaml;
+  std::vector<std::string> payloads;  ///< together on the tray
+  std::string robot, objects, uncertainty, scene, json, yaml;
+  std::optional<double> max_slide;  ///< [m]
   double max_fall{0.01};
   std::uint64_t seed{1};
   int threads{0}, check_truths{0};
@@ -24,7 +28,9 @@ struct LimitsOptions {
 void AddLimitsVerb(CLI::App* app, LimitsOptions* options);
 
 /// Looks for the limits, prints and writes them.
-/// @return kExitRecommended or kExitCancelled.  @throws base::ConfigError for bad input.
+/// @return kExitRecommended, kExitCancelled, or kExitBadInput: some of the payloads were refused,
+/// which is printed on standard error, the others are answered.
+/// @throws base::ConfigError for bad input that leaves nothing to answer.
 int RunLimitsVerb(const LimitsOptions& options, const std::string& package_folder,
                   const std::function<bool()>& cancelled);
 
