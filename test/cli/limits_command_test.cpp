@@ -157,6 +157,25 @@ TEST(LimitsCommandTest, BadObjectsAreNamedAndTheOthersAnswered) {
   EXPECT_THAT(ended.out, HasSubstr("At each limit peppermill1 falls in none"));
 }
 
+TEST(LimitsCommandTest, GivenLimitsAreAnsweredAsTableAndCsv) {
+  const TemporaryFolder folder;
+  const std::string given = folder.Write(
+      "dwa.yaml",
+      "DWAPlannerROS: {max_vel_trans: 0.1, acc_lim_x: 1.0, acc_lim_y: 1.0, sim_time: 2}");
+  const std::string csv = (folder.path() / "given.csv").string();
+  const Ended ended = Limits({"--object", "peppermill1", "--object", "coffee_cup1", "--given",
+                              given, "--csv", csv, "--max-slide", "0.05"});
+  EXPECT_EQ(ended.code, 0) << ended.err;
+  EXPECT_THAT(ended.out, AllOf(HasSubstr("used: DWAPlannerROS: max_vel_trans, acc_lim_x"),
+                               HasSubstr("not used: DWAPlannerROS: sim_time"),
+                               HasSubstr("more than 0.05 m is a failure"), HasSubstr("yes")));
+  EXPECT_THAT(base::ReadTextFile(csv),
+              AllOf(HasSubstr("object,motion,unit,limit,source,closed_form,slide_m,falls"),
+                    HasSubstr("peppermill1,speed,m/s,0.1,given"),
+                    HasSubstr("coffee_cup1,turning,rad/s,2,robot's own")));
+  EXPECT_EQ(Limits({"--object", "peppermill1", "--csv", csv}).code, 1);
+}
+
 TEST(LimitsCommandTest, BadInputIsToldBeforeAnythingIsPlayed) {
   EXPECT_THAT(Limits({"--object", "pepermill1"}).err, HasSubstr("peppermill1"));
   EXPECT_THAT(Limits({"--object", "none.yaml"}).err, HasSubstr("none.yaml"));

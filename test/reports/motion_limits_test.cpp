@@ -396,6 +396,82 @@ TEST(MotionLimitsTest, ObjectsThatOverlapAreNamed) {
   }
 }
 
+TEST(MotionLimitsTest, GivenLimitsAreCheckedForEachObject) {
+  const hires::test_support::TemporaryFolder folder;
+  const std::string low = BoxFile(folder, "low", "depth: 0.08, width: 0.08, height: 0.04");
+  const std::string tall = BoxFile(folder, "tall", "depth: 0.06, width: 0.06, height: 0.40");
+  const auto setup = PlateSetup(folder, {low, tall});
+  const GivenLimits given{
+      {{"speed", 0.4}, {"acceleration", 1.0}, {"deceleration", 1.0}, {"turning", 0.5}}, {}, {}};
+  const auto report = CheckGivenLimits({{"low", "tall"}, false, 0.5}, setup, given, {});
+  ASSERT_TRUE(report);
+  ASSERT_EQ(report->verdicts.size(), 10u);
+  // A sudden stop from 0.4 m/s: the tall box topples from 0.14 m/s, the low one from 0.8 m/s.
+  EXPECT_EQ(report->verdicts[0].object, "low");
+  EXPECT_TRUE(report->verdicts[0].survives());
+  EXPECT_EQ(report->verdicts[1].object, "tall");
+  EXPECT_EQ(report->verdicts[1].falls, report->num_truths);
+  EXPECT_EQ(report->verdicts[8].bounds.motion, "together");
+  EXPECT_THAT(GivenText(*report, given), HasSubstr("no: 5 of 5 fail"));
+  EXPECT_THAT(GivenCsv(*report),
+              AllOf(HasSubstr("object,motion,unit,limit,source"),
+                    HasSubstr("low,speed,m/s,0.4,given,"), HasSubstr("tall,speed,m/s,0.4,given,")));
+}
+
+TEST(GivenLimitsTest, ReadsRos1AndNav2Keys) {
+  const hires::test_support::TemporaryFolder folder;
+  const std::string dwa = folder.Write(
+      "dwa.yaml",
+      "DWAPlannerROS:\n  max_vel_x: 0.3\n  max_vel_y: 0.4\n  max_vel_trans: 0.45\n  max_vel_theta: "
+      "1.0\n  acc_lim_x: 3.0\n  acc_lim_y: 4.0\n  acc_lim_theta: 2.0\n  sim_time: 1.7\n");
+  const GivenLimits omni = ReadGivenLimits(dwa, true);
+  EXPECT_EQ(omni.values.at("speed"), 0.45);  // of 0.5 along the diagonal
+  EXPECT_EQ(omni.values.at("acceleration"), 5.0);
+  EXPECT_EQ(omni.values.at("deceleration"), 5.0);
+  EXPECT_EQ(omni.values.at("angular_acceleration"), 2.0);
+  EXPECT_THAT(omni.unused, testing::ElementsAre("DWAPlannerROS: sim_time"));
+  EXPECT_EQ(ReadGivenLimits(dwa, false).values.at("speed"), 0.3);
+  const std::string nav2 = folder.Write(
+      "nav2.yaml",
+      "controller_server:\n  ros__parameters:\n    FollowPath:\n      max_vel_x: 0.5\n      "
+      "acc_lim_x: "
+      "2.5\n      decel_lim_x: -2.0\n      acc_lim_theta: 3.2\nvelocity_smoother:\n  "
+      "ros__parameters:\n    max_velocity: [0.26, 0.0, 1.0]\n    min_velocity: [-0.3, 0.0, -1.0]\n"
+      "    max_accel: [1.5, 0.0, 3.0]\n");
+  const GivenLimits limits = ReadGivenLimits(nav2, false);
+  EXPECT_EQ(limits.values.at("speed"), 0.3);  // backward
+  EXPECT_EQ(limits.values.at("acceleration"), 1.5);
+  EXPECT_EQ(limits.values.at("deceleration"), 2.0);  // of the controller
+  EXPECT_EQ(limits.values.at("angular_acceleration"), 3.0);
+  EXPECT_EQ(limits.used.size(), 2u);
+  const std::string both = folder.Write("both.yaml", "max_accel: [1, 1, 1]\nmax_vel_x: 0.2\n");
+  const GivenLimits ros1 = ReadGivenLimits(both, false);
+  EXPECT_EQ(ros1.values.count("acceleration"), 0u);
+  EXPECT_THAT(ros1.used, testing::ElementsAre("max_vel_x"));
+  EXPECT_THAT(ros1.unused, testing::ElementsAre("max_accel"));
+}
+
+TEST(GivenLimitsTest, NamesAllThatIsWrong) {
+  const hires::test_support::TemporaryFolder folder;
+  const auto error_of = [&](const std::string& text) {
+    try {
+      ReadGivenLimits(folder.Write("given.yaml", text), false);
+    } catch (const base::ConfigError& error) {
+      return std::string(error.what());
+    }
+    return std::string("no error");
+  };
+  EXPECT_THAT(error_of("DWAPlannerROS:\n  max_vel_x: fast\n  acc_lim_x: .nan\n"),
+              AllOf(HasSubstr("given.yaml:2: DWAPlannerROS: max_vel_x is fast; expected a finite"),
+                    HasSubstr("given.yaml:3: DWAPlannerROS: acc_lim_x is .nan")));
+  EXPECT_THAT(error_of("max_accel: [1, 2]\n"), HasSubstr("a list of 3 numbers"));
+  EXPECT_THAT(error_of("max_val_x: 0.3\n"),
+              AllOf(HasSubstr("no limits found"), HasSubstr("max_val_x")));
+  EXPECT_THAT(error_of("max_vel_x: 0\nacc_lim_x: 0\n"),
+              AllOf(HasSubstr("speed is 0"), HasSubstr("acceleration is 0")));
+  EXPECT_THAT(error_of("a: [\n"), HasSubstr("not valid YAML"));
+}
+
 TEST(MotionLimitsTest, EndsWhenItIsCancelled) {
   EXPECT_FALSE(FindLimits(Mill(0.3), SetupWith(nullptr, ""), {2, [] { return true; }, {}}));
 }

@@ -140,7 +140,54 @@ class LimitFinder {
     return report_;
   }
 
+  std::optional<GivenReport> CheckGiven(const GivenLimits& given) {
+    stage_.ends_at_first_fall = false;
+    GivenReport report{request_,
+                       setup_.scene->robot.model.name,
+                       NumTruths(request_.max_fall),
+                       setup_.standing.slide,
+                       std::numeric_limits<double>::infinity(),
+                       {}};
+    for (const PayloadSupport& payload : forms_.payloads) {
+      const double slides = payload.SlidingAcceleration(setup_.scene->world.gravity);
+      report.sliding_acceleration = std::min(report.sliding_acceleration, slides);
+    }
+    if (given.values.count("angular_acceleration") > 0) {
+      sudden_ = std::min(sudden_, given.values.at("angular_acceleration"));
+    }
+    SetDirections();
+    std::vector<int> truths(report.num_truths);
+    std::iota(truths.begin(), truths.end(), 0);
+    for (const Motion& motion : Motions()) {
+      const bool is_together = motion.motion == "together";
+      const auto limit = given.values.find(motion.motion);
+      const bool is_given =
+          is_together || (limit != given.values.end() && limit->second <= motion.robots_own);
+      const double value = is_given && !is_together ? limit->second : motion.robots_own;
+      const auto outcomes = PlayTruths(motion, value, truths);
+      if (!outcomes) return std::nullopt;
+      values_[motion.motion] = value;
+      AddVerdicts(motion, value, is_given ? "given" : "robot's own", *outcomes, &report);
+    }
+    return report;
+  }
+
  private:
+  void AddVerdicts(const Motion& motion, double value, const std::string& source,
+                   const std::vector<DriveOutcome>& outcomes, GivenReport* report) const {
+    for (std::size_t i = 0; i < forms_.payloads.size(); ++i) {
+      GivenVerdict verdict{forms_.payloads[i].name, motion, value, source};
+      for (const MotionBounds& bounds : forms_.of_each[i]) {
+        if (bounds.motion == motion.motion) verdict.bounds = bounds;
+      }
+      for (const DriveOutcome& outcome : outcomes) {
+        verdict.falls += outcome.fell[i] ? 1 : 0;
+        verdict.slide = std::max(verdict.slide, outcome.slide[i]);
+      }
+      report->verdicts.push_back(std::move(verdict));
+    }
+  }
+
   void SetDirections() {
     report_.is_omnidirectional = controller_.drive == robot::Drive::kOmnidirectional;
     report_.num_directions = report_.is_omnidirectional ? kDirections : 2;
@@ -274,7 +321,7 @@ class LimitFinder {
   }
 
   double gently() const { return std::min(kGently, controller_.limits.max_linear_acceleration); }
-  double sudden() const { return controller_.limits.max_angular_acceleration; }
+  double sudden() const { return sudden_; }
 
   /// Driven gently up to it; then commands cease, and the controller's time-out stops the base.
   Drives SpeedDrives() const {
@@ -327,7 +374,8 @@ class LimitFinder {
   const base::Crew& crew_;
   const robot::BaseControllerParams& controller_;
   const ClosedForms forms_;
-  const DriveStage stage_;
+  DriveStage stage_;
+  double sudden_{controller_.limits.max_angular_acceleration};  // [rad/s^2]
   LimitsReport report_;
   std::map<std::string, double> values_;  // of the motions that later ones build on
   double last_slide_{0.0};                // [m] of the truths that were played last
@@ -359,6 +407,12 @@ std::optional<LimitsReport> FindLimits(const LimitsRequest& request,
                                        const imagination::ImaginationSetup& setup,
                                        const base::Crew& crew) {
   return LimitFinder(request, setup, crew).Find();
+}
+
+std::optional<GivenReport> CheckGivenLimits(const LimitsRequest& request,
+                                            const imagination::ImaginationSetup& setup,
+                                            const GivenLimits& given, const base::Crew& crew) {
+  return LimitFinder(request, setup, crew).CheckGiven(given);
 }
 
 }  // namespace hires::reports

@@ -8,6 +8,7 @@
 
 #include "base/parallel.h"
 #include "hires/imagination/imagination_setup.h"
+#include "reports/limits/given_limits.h"
 #include "reports/limits/payload_support.h"
 
 // How fast, how suddenly and how sharply a robot may drive so that what stands on its tray stays
@@ -107,6 +108,37 @@ ClosedForms ClosedFormLimits(const std::vector<std::string>& objects,
 std::optional<LimitsReport> FindLimits(const LimitsRequest& request,
                                        const imagination::ImaginationSetup& setup,
                                        const base::Crew& crew);
+
+/// How one payload bears one given limit.
+struct GivenVerdict {
+  std::string object;
+  MotionBounds bounds;  ///< closed form of this payload; of `together` none
+  double value{0.0};    ///< what was played; of `together` 1
+  std::string source;   ///< "given", or "robot's own" where that is smaller or the file has none
+  int falls{0};         ///< of num_truths
+  double slide{0.0};    ///< [m] the largest
+  bool survives() const { return falls == 0; }
+};
+struct GivenReport {
+  LimitsRequest request;
+  std::string robot;
+  int num_truths{0};
+  double max_slide{0.1};               ///< [m]
+  double sliding_acceleration{0.0};    ///< [m/s^2] mu g of the most slippery payload
+  std::vector<GivenVerdict> verdicts;  ///< motion by motion, the payloads in their order
+};
+
+/// Plays the drives of FindLimits() at given limits instead of looking for some, until all payloads
+/// fell or all is quiet.
+/// @return nothing when it was cancelled.  @throws base::ConfigError as ClosedFormLimits().
+std::optional<GivenReport> CheckGivenLimits(const LimitsRequest& request,
+                                            const imagination::ImaginationSetup& setup,
+                                            const GivenLimits& given, const base::Crew& crew);
+
+/// For people: a table, and which keys of the file it rests on.
+std::string GivenText(const GivenReport& report, const GivenLimits& given);
+/// One row for each verdict; a head first.
+std::string GivenCsv(const GivenReport& report);
 
 /// For people: the closed forms beside what the base's controller allows, and overhangs.
 /// @param is_assumed  no file says what that controller allows.

@@ -80,11 +80,12 @@ void CheckLimitsFiles(const LimitsOptions& o, const imagination::SetupConfig& se
   std::vector<VerbFile> inputs = SceneFiles(setup.world, "", setup.robot, {});
   for (const VerbFile& input : {VerbFile{"scene", o.scene}, VerbFile{"objects", setup.objects},
                                 VerbFile{"uncertainty", setup.uncertainty},
-                                VerbFile{"uncertainty over it", setup.uncertainty_over}}) {
+                                VerbFile{"uncertainty over it", setup.uncertainty_over},
+                                VerbFile{"given limits", o.given}}) {
     inputs.push_back(input);
   }
   for (const std::string& object : setup.extra_objects) inputs.push_back({"object", object});
-  CheckOutputs({{"--yaml", o.yaml}, {"--json", o.json}}, inputs);
+  CheckOutputs({{"--yaml", o.yaml}, {"--json", o.json}, {"--csv", o.csv}}, inputs);
 }
 
 /// What was derived of the robot, a line each; "" where its files say all.
@@ -120,6 +121,20 @@ bool Find(const LimitsOptions& options, const reports::LimitsRequest& request,
   return true;
 }
 
+/// @return false when cancelled.
+bool CheckGiven(const LimitsOptions& options, const reports::LimitsRequest& request,
+                const imagination::ImaginationSetup& setup, const base::Crew& crew) {
+  const bool is_omnidirectional =
+      setup.scene->robot.profile.base_controller.drive == robot::Drive::kOmnidirectional;
+  const reports::GivenLimits given = reports::ReadGivenLimits(options.given, is_omnidirectional);
+  const auto report = reports::CheckGivenLimits(request, setup, given, crew);
+  if (crew.on_progress) std::cerr << "\r\033[K";
+  if (!report) return false;
+  std::cout << reports::GivenText(*report, given);
+  if (!options.csv.empty()) base::ReplaceTextFile(options.csv, reports::GivenCsv(*report));
+  return true;
+}
+
 }  // namespace
 
 void AddLimitsVerb(CLI::App* app, LimitsOptions* options) {
@@ -150,8 +165,17 @@ void AddLimitsVerb(CLI::App* app, LimitsOptions* options) {
   verb->add_option("--check", options->check_truths,
                    "play so many new truths at each limit, and 10 % above it")
       ->check(NumberBetween(1, 100000));
-  verb->add_option("--yaml", options->yaml, "write move_base's parameters to this file as well");
-  verb->add_option("--json", options->json, "write all numbers to this file");
+  CLI::Option* yaml = verb->add_option("--yaml", options->yaml,
+                                       "write move_base's parameters to this file as well");
+  CLI::Option* json = verb->add_option("--json", options->json, "write all numbers to this file");
+  CLI::Option* given = verb->add_option("--given", options->given,
+                                        "check these limits instead: parameters of DWAPlannerROS, "
+                                        "TebLocalPlannerROS or Nav2 (YAML)")
+                           ->excludes(yaml)
+                           ->excludes(json)
+                           ->excludes(verb->get_option("--check"));
+  verb->add_option("--csv", options->csv, "write which given limits each object survives to a file")
+      ->needs(given);
   verb->add_flag("--quiet", options->quiet, "no progress bar");
 }
 
@@ -177,7 +201,8 @@ int RunLimitsVerb(const LimitsOptions& options, const std::string& package_folde
             << '\n'
             << std::flush;
   const base::Crew crew = CrewOf(options, cancelled);
-  const bool is_done = Find(options, request, setup, crew);
+  const bool is_done = options.given.empty() ? Find(options, request, setup, crew)
+                                             : CheckGiven(options, request, setup, crew);
   if (!is_done) {
     std::cerr << "hires limits: cancelled; nothing is written\n";
     return kExitCancelled;

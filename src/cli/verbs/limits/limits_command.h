@@ -15,7 +15,7 @@ namespace hires::cli {
 /// What was typed behind `hires limits`.
 struct LimitsOptions {
   std::vector<std::string> payloads;  ///< together on the tray
-  std::string robot, objects, uncertainty, scene, json, yaml;
+  std::string robot, objects, uncertainty, scene, json, yaml, given, csv;
   std::optional<double> max_slide;  ///< [m]
   double max_fall{0.01};
   std::uint64_t seed{1};
@@ -27,7 +27,7 @@ struct LimitsOptions {
 /// Adds the verb to the program.  @pre `options` outlives `app`.
 void AddLimitsVerb(CLI::App* app, LimitsOptions* options);
 
-/// Looks for the limits, prints and writes them.
+/// Looks for the limits, or checks given ones, prints and writes them.
 /// @return kExitRecommended, kExitCancelled, or kExitBadInput: some of the payloads were refused,
 /// which is printed on standard error, the others are answered.
 /// @throws base::ConfigError for bad input that leaves nothing to answer.
