@@ -120,12 +120,13 @@ std::string SlideText(const LimitsReport& report) {
                                    report.careful->slide));
 }
 
-/// Empty, or that a payload slides whenever the base uses this limit.
-std::string SlidesAtEveryStart(const char* what, double acceleration, double slides) {
+/// Empty, or that a payload slides whenever the base speeds up by this [m/s^2] in the plane.
+std::string SlidesAtEveryStart(double acceleration, double slides) {
   if (acceleration <= slides) return "";
   return fmt::format(
-      "{} {:g} m/s^2 is above mu g = {:.3f} m/s^2: the payload slides at every start and stop.\n",
-      what, acceleration, slides);
+      "acc_lim allows {:.3f} m/s^2, above mu g = {:.3f} m/s^2: the payload slides at every "
+      "start.\n",
+      acceleration, slides);
 }
 
 }  // namespace
@@ -210,7 +211,8 @@ std::string LimitsYaml(const LimitsReport& report) {
       "# acc_lim_x holds up to {:g} m/s; any speed: {}. Slides of up to {:g} m count as kept.\n",
       speed, Amount(report.Of("deceleration").closed_form, report.Of("deceleration")),
       report.max_slide);
-  const std::string slides = SlidesAtEveryStart("acc_lim_x", linear, report.SlidingAcceleration());
+  const std::string slides = SlidesAtEveryStart(
+      report.is_omnidirectional ? std::sqrt(2.0) * linear : linear, report.SlidingAcceleration());
   if (!slides.empty()) text += "# " + slides;
   text += "# Left out: " + base::Join(LeftOut(), "; ") + ".\n";
   if (report.min_turning_radius > 0.0) {

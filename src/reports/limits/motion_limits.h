@@ -82,9 +82,9 @@ struct LimitsReport {
   double wall_seconds{0.0};  ///< set by who asked; 0: unknown
 
   const MotionLimit& Of(const std::string& motion) const;
+  double gravity{9.81};  ///< [m/s^2]
   /// [m/s^2] mu g of the most slippery payload.
   double SlidingAcceleration() const;
-  double gravity{9.81};  ///< [m/s^2]
 };
 
 /// How many truths of which none may lose the load: the smallest n with (1 - max_fall)^n <= 0.05.
