@@ -42,6 +42,7 @@ constexpr FailureInfo kTable[] = {
     {Code::kOutOfView, "out_of_view", kAction, true},
     // Every motion has a time in which it ends; one that does not is not obeyed by the robot.
     {Code::kTimedOut, "timed_out", kRobot, true},
+    {Code::kRobotTips, "robot_tips", kAction, false},
 
     {Code::kMotorsHalted, "motors_halted", kRobot, true},
     {Code::kNoMotorsState, "no_motors_state", kRobot, true},

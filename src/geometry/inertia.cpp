@@ -34,8 +34,7 @@ MassProperties UnitSolidOf(const Collision& shape) {
             return solid(box, box.size.prod());
           }},
       shape.shape);
-  const Eigen::Matrix3d R_BS = shape.X_BS.rotation.toRotationMatrix();
-  return {in_S.mass, shape.X_BS * in_S.p_BBcm, R_BS * in_S.I_BBcm * R_BS.transpose()};
+  return InFrame(shape.X_BS, in_S);
 }
 
 /// [m] From a point to the farthest one of a shape.
@@ -58,6 +57,12 @@ double FarthestFrom(const Eigen::Vector3d& p_B, const Collision& shape) {
 }
 
 }  // namespace
+
+MassProperties InFrame(const Pose3& X_WB, const MassProperties& properties_B) {
+  const Eigen::Matrix3d R_WB = X_WB.rotation.toRotationMatrix();
+  return {properties_B.mass, X_WB * properties_B.p_BBcm,
+          R_WB * properties_B.I_BBcm * R_WB.transpose()};
+}
 
 Eigen::Matrix3d SolidInertia(const Cylinder& cylinder, double mass) {
   const double r2 = cylinder.radius * cylinder.radius;

@@ -8,6 +8,7 @@
 
 #include "hires/actions/catalogue.h"
 #include "hires/base/text.h"
+#include "imagination/hazards.h"
 #include "imagination/purpose.h"
 #include "imagination/rollout/rollout_start.h"
 #include "imagination/uncertainty_layers.h"
@@ -193,6 +194,7 @@ void AddCaveats(const RolloutSetup& setup, const std::vector<base::ActionCall>& 
     for (const std::string& text : setup.scene->robot.assumed)
       report->caveats.push_back("assumed of the robot, " + text);
   }
+  for (std::string& text : HazardsOf(setup, actions)) report->caveats.push_back(std::move(text));
   const std::string certain = CertainText(*setup.uncertainty);
   if (!certain.empty()) report->caveats.push_back(certain);
 }

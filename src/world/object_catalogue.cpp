@@ -8,6 +8,7 @@
 #include "hires/base/error.h"
 #include "hires/base/param_reader.h"
 #include "hires/base/text.h"
+#include "world/liquid.h"
 
 namespace hires::world {
 namespace {
@@ -66,32 +67,47 @@ std::string FindModelFile(const std::string& name, const std::string& catalogue_
                                       base::UnknownName("folder", wanted, known)));
 }
 
-constexpr char kConcepts[] = "concepts";  // what the file says besides instances
+// What the file says besides instances: of model folders, which concept of the ontology they are,
+// and what liquid they hold.
+constexpr char kConcepts[] = "concepts", kLiquids[] = "liquids";
 
-/// Folder (lower case) -> concept; a catalogue may say none.
-std::map<std::string, std::string> LoadConcepts(const std::string& catalogue_path,
-                                                const std::map<std::string, std::string>& folders) {
+/// What the catalogue says of model folders, by lower-case name; it may say nothing.
+struct FolderNotes {
   std::map<std::string, std::string> concepts;
+  std::map<std::string, Liquid> liquids;
+};
+
+FolderNotes LoadFolderNotes(const std::string& catalogue_path,
+                            const std::map<std::string, std::string>& folders) {
+  FolderNotes notes;
   base::ParamReader in = base::ParamReader::FromFile(catalogue_path);
-  if (!in.Has(kConcepts)) return concepts;
-  base::ParamReader block = in.Sub(kConcepts);
-  for (const std::string& folder : block.Keys()) {
-    if (folders.count(base::ToLower(folder)) == 0) {
-      std::vector<std::string> known;
-      for (const auto& one : folders) known.push_back(one.second);
-      block.Fail(folder, base::UnknownName("folder", folder, known));
+  for (const char* key : {kConcepts, kLiquids}) {
+    if (!in.Has(key)) continue;
+    base::ParamReader block = in.Sub(key);
+    for (const std::string& folder : block.Keys()) {
+      if (folders.count(base::ToLower(folder)) == 0) {
+        std::vector<std::string> known;
+        for (const auto& one : folders) known.push_back(one.second);
+        block.Fail(folder, base::UnknownName("folder", folder, known));
+      }
+      if (key == kConcepts) {
+        notes.concepts[base::ToLower(folder)] = block.GetString(folder);
+      } else {
+        notes.liquids[base::ToLower(folder)] = ReadLiquid(block.Sub(folder));
+      }
     }
-    concepts[base::ToLower(folder)] = block.GetString(folder);
   }
-  return concepts;
+  return notes;
 }
 
 /// @param file  the model.sdf of a folder.
-ObjectModel LoadWithConcept(const std::string& file,
-                            const std::map<std::string, std::string>& concepts) {
+ObjectModel LoadWithNotes(const std::string& file, const FolderNotes& notes) {
   ObjectModel model = LoadObjectModel(file);
-  const auto found = concepts.find(base::ToLower(fs::path(file).parent_path().filename().string()));
-  if (found != concepts.end()) model.concept_name = found->second;
+  const std::string folder = base::ToLower(fs::path(file).parent_path().filename().string());
+  const auto found = notes.concepts.find(folder);
+  if (found != notes.concepts.end()) model.concept_name = found->second;
+  const auto liquid = notes.liquids.find(folder);
+  if (liquid != notes.liquids.end()) model.liquid = liquid->second;
   return model;
 }
 
@@ -102,7 +118,7 @@ std::map<std::string, std::string> LoadObjectCatalogue(const std::string& path) 
   std::map<std::string, std::string> catalogue;
   std::map<std::string, std::string> seen;  // lower case -> as in the file
   for (const std::string& name : in.Keys()) {
-    if (name == kConcepts) continue;
+    if (name == kConcepts || name == kLiquids) continue;
     const std::string folder = in.GetString(name);
     if (!IsPlainName(folder)) in.Fail(name, "wanted the name of a folder in models/");
     const auto [other, is_new] = seen.emplace(base::ToLower(name), name);
@@ -118,9 +134,9 @@ std::map<std::string, std::string> LoadObjectCatalogue(const std::string& path) 
 ObjectModel FindObjectModel(const std::string& name_or_path, const std::string& catalogue_path) {
   if (IsPath(name_or_path)) return LoadObjectModel(name_or_path);
   const auto folders = FoldersByLowerName(ModelsBeside(catalogue_path));
-  return LoadWithConcept(
+  return LoadWithNotes(
       FindModelFile(name_or_path, catalogue_path, LoadObjectCatalogue(catalogue_path), folders),
-      LoadConcepts(catalogue_path, folders));
+      LoadFolderNotes(catalogue_path, folders));
 }
 
 std::map<std::string, std::shared_ptr<const ObjectModel>> LoadCatalogueModels(
@@ -128,13 +144,12 @@ std::map<std::string, std::shared_ptr<const ObjectModel>> LoadCatalogueModels(
   const std::map<std::string, std::string> catalogue = LoadObjectCatalogue(catalogue_path);
   const std::map<std::string, std::string> folders =
       FoldersByLowerName(ModelsBeside(catalogue_path));
-  const std::map<std::string, std::string> concepts = LoadConcepts(catalogue_path, folders);
+  const FolderNotes notes = LoadFolderNotes(catalogue_path, folders);
   std::map<std::string, std::shared_ptr<const ObjectModel>> by_file, by_instance;
   for (const auto& [instance, folder] : catalogue) {
     const std::string file = FindModelFile(instance, catalogue_path, catalogue, folders);
     std::shared_ptr<const ObjectModel>& model = by_file[file];
-    if (model == nullptr)
-      model = std::make_shared<const ObjectModel>(LoadWithConcept(file, concepts));
+    if (model == nullptr) model = std::make_shared<const ObjectModel>(LoadWithNotes(file, notes));
     by_instance[instance] = model;
   }
   return by_instance;

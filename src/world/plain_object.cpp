@@ -1,10 +1,14 @@
 #include "world/plain_object.h"
 
+#include <fmt/format.h>
+
+#include <algorithm>
 #include <filesystem>
 #include <string>
 #include <vector>
 
 #include "hires/base/param_reader.h"
+#include "world/liquid.h"
 #include "world/solid_object.h"
 
 namespace hires::world {
@@ -27,6 +31,16 @@ void RefuseOtherSizes(const base::ParamReader& in, bool is_round) {
     in.Fail(all, is_round ? "wanted 'radius' and 'height', a number each"
                           : "wanted 'depth', 'width' and 'height', a number each");
   }
+}
+
+/// @param half_width, height  [m] of the vessel
+Liquid ReadLiquidWithin(base::ParamReader in, double half_width, double height) {
+  const Liquid liquid = ReadLiquid(in);
+  if (liquid.radius > half_width)
+    in.Fail("radius", fmt::format("wanted at most {:g}, as wide as the object", half_width));
+  if (liquid.rim > height)
+    in.Fail("rim", fmt::format("wanted at most {:g}, the object's height", height));
+  return liquid;
 }
 
 }  // namespace
@@ -60,6 +74,11 @@ ObjectModel LoadPlainObject(const std::string& path) {
   }
   if (in.Has("friction")) {
     model.collisions.front().friction = in.Get("friction", Between(0.0, 10.0));
+  }
+  if (in.Has("liquid")) {
+    const geometry::Aabb size = geometry::BoundsOf(model.collisions.front().shape, {});
+    model.liquid =
+        ReadLiquidWithin(in.Sub("liquid"), std::min(size.upper.x(), size.upper.y()), height);
   }
   in.RejectUnknownKeys();
   return model;

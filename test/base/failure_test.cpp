@@ -48,7 +48,8 @@ TEST(FailureTest, NumbersOnTheWireStayAsTheyAre) {
   EXPECT_EQ(static_cast<int>(FailureCode::kMotorsHalted), 200);
   EXPECT_EQ(static_cast<int>(FailureCode::kConditionLost), 304);
   EXPECT_EQ(static_cast<int>(FailureCode::kBadStart), 400);
-  EXPECT_EQ(AllFailures().size(), 63u);
+  EXPECT_EQ(static_cast<int>(FailureCode::kRobotTips), 111);
+  EXPECT_EQ(AllFailures().size(), 64u);
 }
 
 TEST(FailureTest, UnknownWordsAndNumbersAreNoCodes) {

@@ -4,6 +4,7 @@
 
 #include "hires/base/text.h"
 #include "imagination/rollout_examples.h"
+#include "support/log_catcher.h"
 #include "support/messages.h"
 
 namespace hires::imagination::prices_test {
@@ -39,6 +40,18 @@ TEST(ReadPricesTest, EveryCodeThatEndsARolloutHasItsPrice) {
   for (const base::FailureInfo& info : base::AllFailures()) {
     EXPECT_EQ(prices.of.count(info.code), EndsRollouts(info.code) ? 1u : 0u) << info.word;
   }
+}
+
+TEST(ReadPricesTest, FileWithoutRobotTipsTakesTheDefaultWithOneWarning) {
+  std::string yaml = base::ReadTextFile(HIRES_SOURCE_DIR "/config/prices.yaml", 1u << 16);
+  const std::size_t line = yaml.find("robot_tips:");
+  yaml.erase(line, yaml.find('\n', line) - line);
+  const hires::test_support::LogCatcher log;
+  const Prices prices = ReadPrices(base::ParamReader::FromString(yaml, "prices.yaml"));
+  EXPECT_EQ(prices.of.at(base::FailureCode::kRobotTips), 900.0);
+  EXPECT_THAT(log.lines, testing::ElementsAre(AllOf(HasSubstr("robot_tips"), HasSubstr("900"))));
+  EXPECT_EQ(Configured().of.at(base::FailureCode::kRobotTips), 900.0);
+  EXPECT_EQ(log.lines.size(), 1u) << "the file that has it is not warned of";
 }
 
 TEST(ReadPricesTest, ACollisionIsTheWorst) {

@@ -10,6 +10,7 @@
 #include "hires/base/error.h"
 #include "hires/world/object_catalogue.h"
 #include "hires/world/world.h"
+#include "world/liquid.h"
 #include "world/sdf_texts.h"
 #include "world/temp_folder.h"
 
@@ -184,6 +185,55 @@ TEST_F(ObjectModelTest, RefusesPlainObjectsThatAreNone) {
   EXPECT_THAT(ErrorOf("m.yaml", "{shape: cylinder, radius: 0.04, height: 0.2, mas: 0.5}"),
               HasSubstr("m.yaml: key 'mas' is unknown; did you mean 'mass'?; line 1"));
   EXPECT_THAT(ErrorOf("c.yaml", "{shape: cone, height: 0.2, mass: 0.5}"), HasSubstr("cylinder"));
+}
+
+TEST_F(ObjectModelTest, LiquidOfAPlainObjectIsRead) {
+  const ObjectModel tea =
+      LoadObjectModel(folder_.Write("tea.yaml",
+                                    "{shape: cylinder, radius: 0.038, height: 0.09, mass: 0.35,\n"
+                                    " liquid: {radius: 0.036, fill: 0.077, rim: 0.085}}"));
+  ASSERT_TRUE(tea.liquid);
+  EXPECT_EQ(tea.liquid->radius, 0.036);
+  EXPECT_EQ(tea.liquid->fill, 0.077);
+  EXPECT_EQ(tea.liquid->rim, 0.085);
+  EXPECT_FALSE(MayHoldUnknownLiquid(tea));
+}
+
+TEST_F(ObjectModelTest, RefusesLiquidsThatCannotBeNamingLineValueAndRange) {
+  const auto error_of = [&](const std::string& liquid) {
+    return ErrorOf(
+        "tea.yaml",
+        "shape: cylinder\nradius: 0.038\nheight: 0.09\nmass: 0.35\nliquid: {" + liquid + "}\n");
+  };
+  EXPECT_THAT(error_of("radius: 0.036, fill: 0.09, rim: 0.085"),
+              AllOf(HasSubstr("tea.yaml: liquid.fill is '0.09', wanted at most the rim, 0.085 m"),
+                    HasSubstr("line 5")));
+  EXPECT_THAT(
+      error_of("radius: 0.04, fill: 0.07, rim: 0.085"),
+      AllOf(HasSubstr("liquid.radius is '0.04', wanted at most 0.038"), HasSubstr("line 5")));
+  EXPECT_THAT(error_of("radius: 0.036, fill: 0.07, rim: 0.1"),
+              HasSubstr("liquid.rim is '0.1', wanted at most 0.09"));
+  EXPECT_THAT(error_of("radius: 36, fill: 0.07, rim: 0.085"),
+              HasSubstr("liquid.radius is '36', wanted between 0.001 and 10"));
+  EXPECT_THAT(error_of("radius: 0.036, fill: -1, rim: 0.085"), HasSubstr("liquid.fill is '-1'"));
+  EXPECT_THAT(error_of("radius: 0.036"), HasSubstr("liquid.fill, liquid.rim are missing"));
+  EXPECT_THAT(error_of("radius: 0.036, fill: 0.07, rim: 0.085, color: red"), HasSubstr("color"));
+}
+
+TEST_F(ObjectModelTest, VesselsMayHoldALiquidThatNobodyDescribes) {
+  const auto may_hold = [&](const std::string& file, const std::string& kind,
+                            const std::string& shape) {
+    ObjectModel model =
+        LoadObjectModel(folder_.Write(file, "{shape: " + shape + ", height: 0.1, mass: 0.3}"));
+    model.concept_name = kind;
+    return MayHoldUnknownLiquid(model);
+  };
+  const std::string round = "cylinder, radius: 0.04", box = "box, depth: 0.1, width: 0.1";
+  EXPECT_TRUE(may_hold("x.yaml", "", round)) << "nothing says what it is";
+  EXPECT_FALSE(may_hold("x.yaml", "", box));
+  EXPECT_TRUE(may_hold("milk_bottle.yaml", "", box));
+  EXPECT_TRUE(may_hold("x.yaml", "WineGlass", round));
+  EXPECT_FALSE(may_hold("x.yaml", "Peppermill", round));
 }
 
 TEST_F(ObjectModelTest, UrdfGivesMassShapeAndFriction) {
@@ -567,6 +617,16 @@ TEST_F(CatalogueTest, ModelsKnowTheConceptThatStandsForTheirFolder) {
   Catalogue("mug1: coffee_cup\nconcepts: {coffee_mug: Mug}\n");
   EXPECT_THAT(MessageOf<base::ConfigError>([&] { LoadCatalogueModels(path_); }),
               AllOf(HasSubstr("coffee_mug"), HasSubstr("'coffee_cup'")));
+}
+
+TEST_F(CatalogueTest, ModelsKnowTheLiquidInTheirFolder) {
+  Catalogue("mug1: coffee_cup\nliquids: {Coffee_Cup: {radius: 0.036, fill: 0.07, rim: 0.08}}\n");
+  EXPECT_EQ(LoadObjectCatalogue(path_).size(), 1u);
+  EXPECT_EQ(FindObjectModel("mug1", path_).liquid.value().fill, 0.07);
+  EXPECT_EQ(LoadCatalogueModels(path_).at("mug1")->liquid.value().rim, 0.08);
+  Catalogue("mug1: coffee_cup\nliquids: {coffee_cup: {radius: 0.036, fill: 0.09, rim: 0.08}}\n");
+  EXPECT_THAT(MessageOf<base::ConfigError>([&] { LoadCatalogueModels(path_); }),
+              AllOf(HasSubstr("liquids.coffee_cup.fill is '0.09'"), HasSubstr("line 2")));
 }
 
 TEST_F(CatalogueTest, UnknownNamesGetTheNearestOnes) {

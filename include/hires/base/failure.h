@@ -39,6 +39,7 @@ enum class FailureCode : std::uint16_t {
   kStuck = 108,              ///< it does not come nearer
   kOutOfView = 109,          ///< the head cannot turn to it
   kTimedOut = 110,           ///< it took too long
+  kRobotTips = 111,          ///< the motion of its base tips the robot itself over
 
   // The robot, its drivers and what watches over it. 200 .. 299
   kMotorsHalted = 200,

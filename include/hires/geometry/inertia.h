@@ -25,6 +25,9 @@ Eigen::Matrix3d SolidInertia(const Sphere& sphere, double mass);
 /// (with a relative slack of 1e-6). Empty if physical, else what is wrong.
 std::string WhyUnphysical(const MassProperties& properties);
 
+/// Of a body B whose pose in W is X_WB, in the frame W.
+MassProperties InFrame(const Pose3& X_WB, const MassProperties& properties_B);
+
 /// Of several things that are one body: masses added, inertias by Steiner's theorem.
 /// @pre not empty
 MassProperties Together(const std::vector<MassProperties>& parts);

@@ -14,6 +14,8 @@ namespace hires::imagination {
 
 inline constexpr double kHighestPrice = 1e5;  ///< [s] about a day
 
+inline constexpr double kPenaltyOfTipping = 900.0;  ///< [s] of robot_tips, where a file has none
+
 /// What failures cost, as seconds of the robot's and of people's time: config/prices.yaml.
 struct Prices {
   std::map<base::FailureCode, double> of;  ///< [s] per code, >= 0; empty: nothing is priced
@@ -31,7 +33,8 @@ struct Prices {
 bool EndsRollouts(base::FailureCode code);
 
 /// @throws base::ConfigError naming file and key: a word that is no failure code, a code that ends
-/// no rollout, a code without its price, a price out of range.
+/// no rollout, a code without its price, a price out of range. A file of an earlier version without
+/// robot_tips gets kPenaltyOfTipping, with one warning.
 Prices ReadPrices(base::ParamReader in);
 
 /// The same where all failures, lateness included, cost `factor` times as much.  @pre factor >= 0.

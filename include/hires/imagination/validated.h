@@ -38,8 +38,8 @@ std::vector<std::string> CaveatsOf(const RolloutSetup& setup,
                                    const Validated& validated);
 
 /// The same, after what the report already says, the notes of the objects that are there
-/// (world::ObjectModel::notes), what is assumed of a robot that drives (robot::Robot::assumed), and
-/// what is taken as certain (CertainText).
+/// (world::ObjectModel::notes), what is assumed of a robot that drives (robot::Robot::assumed),
+/// hazards that rollouts do not play (HazardsOf), and what is taken as certain (CertainText).
 void AddCaveats(const RolloutSetup& setup, const std::vector<base::ActionCall>& actions,
                 const Validated& validated, Report* report);
 

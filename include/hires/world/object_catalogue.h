@@ -11,7 +11,8 @@ namespace hires::world {
 /// Reads which model folder each instance name stands for ("peppermill1: peppermill_thesis").
 /// Keys are as in the file; they compare without regard to case. The key `concepts` is no instance:
 /// its block says which concept of the ontology a model folder is ("peppermill_thesis:
-/// Peppermill"); models read by the functions below know it.
+/// Peppermill"), and `liquids` what a model folder holds ("coffee_cup: {radius: 0.036, fill: 0.07,
+/// rim: 0.08}", world::Liquid); models read by the functions below know both.
 /// @throws base::ConfigError: no map of text to text, two names that differ in case only, a value
 /// that is no plain folder name.
 std::map<std::string, std::string> LoadObjectCatalogue(const std::string& path);

@@ -14,6 +14,13 @@
 
 namespace hires::world {
 
+/// A liquid in an upright round vessel, for the warnings about sloshing; physics does not play it.
+struct Liquid {
+  double radius{0.0};  ///< [m] inner radius of the vessel at the surface
+  double fill{0.0};    ///< [m] depth of the liquid
+  double rim{0.0};     ///< [m] height of the rim over the inner bottom, >= fill
+};
+
 /// One kind of loose object: a single rigid body. Origin B lies at the height of its lowest point
 /// (ours: centre of the supporting face); of a world's model where its file puts it.
 struct ObjectModel {
@@ -24,6 +31,7 @@ struct ObjectModel {
   /// What people should know who trust an answer about it, as World::notes; of an object's file
   /// alone, as those of a world's model are the world's. No part of the hash.
   std::vector<std::string> notes{};
+  std::optional<Liquid> liquid{};  ///< what it is known to hold; no part of the hash
 };
 
 /// A body that never moves: wall, table, chair.

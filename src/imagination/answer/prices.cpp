@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "hires/base/check.h"
+#include "hires/base/log.h"
 #include "hires/base/text.h"
 #include "hires/imagination/success_interval.h"
 #include "imagination/answer/confidence_sequence.h"
@@ -51,6 +52,13 @@ Prices ReadPrices(base::ParamReader in) {
     prices.of[CodeAt(in, word)] = in.Get(word, base::Between(0.0, kHighestPrice));
   }
   for (const base::FailureInfo& info : base::AllFailures()) {
+    if (info.code == base::FailureCode::kRobotTips && prices.of.count(info.code) == 0) {
+      prices.of[info.code] = kPenaltyOfTipping;
+      base::Log(base::LogLevel::kWarn,
+                fmt::format("penalties: the file has none for {0}; {1:g} s is used. Add the line "
+                            "'{0}: {1:.1f}' to it",
+                            info.word, kPenaltyOfTipping));
+    }
     if (EndsRollouts(info.code) && prices.of.count(info.code) == 0) {
       in.Fail(info.word, fmt::format("it has no price; give one between 0 and {} s, and its reason "
                                      "as a comment",

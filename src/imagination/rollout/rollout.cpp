@@ -15,6 +15,7 @@
 #include "imagination/rollout/progress_watch.h"
 #include "imagination/rollout/reach_watch.h"
 #include "imagination/rollout/rollout_start.h"
+#include "simulation/floor/robot_balance.h"
 
 namespace hires::imagination {
 namespace {
@@ -63,6 +64,8 @@ class Player {
         drives_(skills::SpecOf(*setup.skills, action).driving != actions::Driving::kNone),
         plans_(skills::SpecOf(*setup.skills, action).driving == actions::Driving::kRoundObstacles),
         driving_(setup.skills->driving) {
+    if (drives_) balance_ = simulation::BalanceOf(simulator_, variation.mass_factor);
+    if (balance_ && !balance_->IsStableAtRest()) balance_.reset();  // HazardsOf warns of it
     simulator_.Remember(KnownAtStart(setup, variation, simulator_));
   }
 
@@ -79,7 +82,7 @@ class Player {
       // Periods are sums of rounded numbers: without the half step some cycles came a step late.
       if (simulator_.time() >= next_cycle_ - half_step) status = Control(start, hooks);
       if (status.progress != skills::Progress::kRunning) break;
-      simulator_.Step();
+      StepOnce();
       if (step % steps_per_look == 0) {
         if (IsCancelled(hooks)) return std::nullopt;
         monitor.Look();
@@ -93,6 +96,7 @@ class Player {
         if (hooks.on_sample) hooks.on_sample(simulator_, monitor.tilt());
       }
       if (simulator_.contact()) status = skills::Failed(Collision());
+      if (HasTipped()) status = skills::Failed(Tipped());
       if (monitor.is_lost()) status = skills::Failed(monitor.why_lost());
       NoteBroken(monitor);
       if (is_void_) status = skills::Failed(Code::kPhysicsBroke);
@@ -201,6 +205,16 @@ class Player {
     return {Code::kRobotCollision, {contact.robot_part, contact.obstacle}, ToString(contact)};
   }
 
+  bool HasTipped() const { return balance_ && balance_->tipped_over; }
+  base::Failure Tipped() const {
+    return {Code::kRobotTips, {simulator_.scene().robot.model.name}, balance_->TippedText()};
+  }
+
+  void StepOnce() {
+    simulator_.Step();
+    if (balance_) balance_->Step(simulator_.base(), simulator_.time_step());
+  }
+
   bool IsApart() const { return watch_ == nullptr || watch_->Look(simulator_); }
 
   /// False if it is cancelled, or something comes near what is left out.
@@ -218,7 +232,7 @@ class Player {
   /// After the action, where samples are for those who watch alone.
   void PlayUntilNextLook(long steps, const LoadMonitor& monitor, const RolloutHooks& hooks) {
     for (long i = 0; i < steps; ++i) {
-      simulator_.Step();
+      StepOnce();
       if (hooks.epilogue > 0.0 && hooks.on_sample && IsSampleDue()) {
         hooks.on_sample(simulator_, monitor.tilt());
       }
@@ -240,6 +254,7 @@ class Player {
     // It was over before the first sample was due: who stands at the goal already has arrived.
     if (result_.action_finished && samples_ == 0) result_.counts += monitor.Sample();
     result_.failure = result_.action_finished ? monitor.WhyNotWell() : status.failure;
+    if (!result_.failure && HasTipped()) result_.failure = Tipped();
     result_.falls = monitor.falls();
     if (!down_before_.empty()) {  // what fell after that may have been thrown
       if (result_.action_finished) result_.failure = {Code::kKnockedOver, down_before_};
@@ -279,6 +294,7 @@ class Player {
   const std::vector<geometry::Pose3> X_BOstart_;
   const bool drives_, plans_;  // its way round what is in the map
   const std::shared_ptr<const skills::DrivingContext> driving_;
+  std::optional<simulation::RobotBalance> balance_;  // null: not known
   ProgressWatch progress_;
   double start_{0.0}, next_cycle_{0.0};  // [s]
   long samples_{0};

@@ -44,9 +44,9 @@ const char* OwnHeading(bool is_assumed) {
 }
 
 /// What these limits say nothing of.
-const std::vector<std::string>& LeftOut() {
-  static const std::vector<std::string> texts{"whether the robot itself tips over",
-                                              "liquids that slosh", "payloads that swing"};
+std::vector<std::string> LeftOut(const LimitsReport& report) {
+  std::vector<std::string> texts = report.hazards.left_out;
+  texts.push_back("payloads that swing");
   return texts;
 }
 
@@ -176,7 +176,7 @@ std::string LimitsText(const LimitsReport& report) {
         "motion_sets or base_controller.limits of a profile do (config/robots/cart.yaml is "
         "one).\n";
   }
-  text += "left out: " + base::Join(LeftOut(), "; ") + ".\n";
+  text += "left out: " + base::Join(LeftOut(report), "; ") + ".\n";
   if (report.wall_seconds > 0.0) {
     text += fmt::format("{:.0f} s played in {:.1f} s, {:.0f} times as fast as real time\n",
                         report.simulated_seconds, report.wall_seconds,
@@ -190,6 +190,8 @@ std::string LimitsYaml(const LimitsReport& report) {
   const auto part = [&](double value) { return Floored(share * value, 1e3); };
   const double speed = part(report.Of("speed").value);
   double linear = part(std::min(report.Of("acceleration").value, report.Of("deceleration").value));
+  const bool is_cut = linear > report.hazards.MostAcceleration();
+  if (is_cut) linear = Floored(report.hazards.MostAcceleration(), 1e3);
   // The local planner's limit is one of each axis: both together are sqrt(2) times as much.
   if (report.is_omnidirectional) linear = Floored(linear / std::sqrt(2.0), 1e3);
   std::string text = fmt::format(
@@ -214,7 +216,8 @@ std::string LimitsYaml(const LimitsReport& report) {
   const std::string slides = SlidesAtEveryStart(
       report.is_omnidirectional ? std::sqrt(2.0) * linear : linear, report.SlidingAcceleration());
   if (!slides.empty()) text += "# " + slides;
-  text += "# Left out: " + base::Join(LeftOut(), "; ") + ".\n";
+  if (is_cut) text += "# Accelerations are cut off where the robot tips or the liquid spills.\n";
+  text += "# Left out: " + base::Join(LeftOut(report), "; ") + ".\n";
   if (report.min_turning_radius > 0.0) {
     return text + CarYaml(speed, part(report.Of("turning").value), linear,
                           part(report.own_angular_acceleration), report.min_turning_radius);
@@ -256,13 +259,22 @@ nlohmann::ordered_json ToJson(const LimitsReport& report) {
                {"speed", report.careful->value ? nlohmann::ordered_json(*report.careful->value)
                                                : nlohmann::ordered_json()}};
   }
+  nlohmann::ordered_json hazards = nlohmann::ordered_json::array();
+  for (const MotionBounds& bound : report.hazards.bounds) {
+    hazards.push_back({{"hazard", bound.motion},
+                       {"unit", bound.unit},
+                       {"limit", OrNull(bound.closed_form)},
+                       {"robots_own", bound.robots_own},
+                       {"closed_form_states", bound.stated}});
+  }
   return {{"object", Names(report.request)},
           {"model", base::Join(report.models, ", ")},
           {"payloads", payloads},
           {"robot", report.robot},
           {"controller_assumed", report.request.is_controller_assumed},
           {"assumed", report.assumed},
-          {"left_out", LeftOut()},
+          {"left_out", LeftOut(report)},
+          {"hazards", hazards},
           {"directions", report.num_directions},
           {"own_angular_acceleration", report.own_angular_acceleration},
           {"max_fall", report.request.max_fall},

@@ -128,6 +128,7 @@ class LimitFinder {
     report_.robot_hash = setup_.robot_hash;
     report_.assumed = setup_.scene->robot.assumed;
     report_.payloads = forms_.payloads;
+    report_.hazards = FindHazardLimits(request_.objects, setup_);
     report_.physics_hash = setup_.physics_hash;
     SetDirections();
     report_.max_slide = setup_.standing.slide;

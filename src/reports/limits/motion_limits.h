@@ -41,6 +41,13 @@ struct MotionBounds {
   std::string stated;       ///< what the closed form speaks of: "tips", "slides", ...
 };
 
+/// Closed forms of hazards that the simulated limits do not cover.
+struct HazardLimits {
+  std::vector<MotionBounds> bounds;   ///< "robot tips, acceleration", "liquid reaches rim", ...
+  std::vector<std::string> left_out;  ///< hazards that nothing is known of
+  double MostAcceleration() const;    ///< [m/s^2] the least of them; infinite: none
+};
+
 /// Closed forms of speed, acceleration, deceleration and turning, in this order.
 struct ClosedForms {
   std::vector<PayloadSupport> payloads;
@@ -78,6 +85,7 @@ struct LimitsReport {
   double own_angular_acceleration{0.0};  ///< [rad/s^2] at which the base begins and ends to turn
   std::vector<std::string> assumed{};    ///< of the robot, as Robot::assumed
   std::vector<PayloadSupport> payloads{};
+  HazardLimits hazards{};  ///< of the robot's own tipping and the object's liquid
   double simulated_seconds{0.0};
   double wall_seconds{0.0};  ///< set by who asked; 0: unknown
 
@@ -99,6 +107,13 @@ int NumTruths(double max_fall);
 /// @throws base::ConfigError as SupportsOnTray(), and for a controller that moves nothing.
 ClosedForms ClosedFormLimits(const std::vector<std::string>& objects,
                              const imagination::ImaginationSetup& setup);
+
+/// Where the robot with the object on its tray begins to tip: acceleration, deceleration, and
+/// turning at the controller's own speed (simulation::RobotBalance); and the acceleration that
+/// brings the object's liquid to its rim (imagination::SpillingAcceleration).
+/// @throws base::ConfigError: no such object.
+HazardLimits FindHazardLimits(const std::vector<std::string>& objects,
+                              const imagination::ImaginationSetup& setup);
 
 /// Looks for limits of all motions. The same bits for any number of threads.
 /// @param setup  whose world only lends its gravity: the floor is empty.
