@@ -138,17 +138,18 @@ TEST_F(HypothesisCommandTest, RefusesBadArgumentsBeforeAnythingIsPlayed) {
   EXPECT_THAT(player.orders, SizeIs(0));
 }
 
-/// The package with two rollouts of each alternative in place of 64, which take a minute.
+/// The package with two rollouts of each alternative in place of up to 400, which take minutes.
 std::string QuickPackage(const TemporaryFolder& folder) {
   namespace fs = std::filesystem;
   fs::copy(kRoot + "/config", folder.path() / "config", fs::copy_options::recursive);
   fs::create_directory(folder.path() / "lab");
-  fs::create_directory_symlink(fs::path(kRoot) / "lab" / "config", folder.path() / "lab" / "config");
+  fs::create_directory_symlink(fs::path(kRoot) / "lab" / "config",
+                               folder.path() / "lab" / "config");
   for (const char* name : {"worlds", "urdf"}) {
     fs::create_directory_symlink(fs::path(kRoot) / name, folder.path() / name);
   }
   std::string text = base::ReadTextFile(kRoot + "/config/execution_monitor.yaml");
-  text.replace(text.find("rollouts: 64"), 12, "rollouts: 2 ");
+  text.replace(text.find("rollouts: 400"), 13, "rollouts: 2  ");
   folder.Write("config/execution_monitor.yaml", text);
   return folder.path().string();
 }

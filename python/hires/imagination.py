@@ -23,7 +23,7 @@ _BRIEF_STATES = (actionlib.CommState.WAITING_FOR_GOAL_ACK, actionlib.CommState.W
 _ATOM = re.compile(r'\s*(\w+)\s*\(([^()]*)\)\s*')
 _OUTCOMES = {getattr(ImagineResult, name): name.lower()
              for name in ('RANKED', 'RANKED_AT_DEADLINE', 'ALL_FAILED', 'NO_WORKER',
-                          'NOTHING_FINISHED', 'INVALID', 'CANCELLED', 'UNDECIDED')}
+                          'NOTHING_FINISHED', 'INVALID', 'CANCELLED', 'UNDECIDED', 'CLOSE')}
 
 
 class ImaginationError(RuntimeError):
@@ -51,12 +51,14 @@ class Alternative:
 
 @dataclass(frozen=True)
 class Answer:
-    outcome: str                         # 'ranked', 'all_failed', 'undecided', ... as in Imagine.action
+    outcome: str                         # 'ranked', 'close', 'all_failed', ... as in Imagine.action
     why: str                             # one sentence
     ranking: Tuple[Alternative, ...]     # best first
     recommended: Optional[Alternative]   # None: imagination recommends nothing
     caveats: Tuple[str, ...]             # what speaks against trusting it
     seed: int
+    probability_best: Optional[float] = None  # that the recommended one costs least; None: not by cost
+    expected_regret: Optional[float] = None   # [s] of the recommended one; None: not by cost
 
 
 @dataclass(frozen=True)
@@ -160,8 +162,8 @@ class Imagination:
         if self._client.wait_for_server():
             self._is_connected.set()
 
-    def ask(self, action, *arguments, robot_at=None, on_tray=(), facts=(), rollouts=64, seed=1,
-            deadline=0.0, ranking='', min_success=0.0, uncertainty=''):
+    def ask(self, action, *arguments, robot_at=None, on_tray=(), facts=(), rollouts=400, seed=1,
+            deadline=0.0, ranking='', min_success=0.0, uncertainty='', max_regret=0.0):
         """What would happen? Each argument is a name, or a list of names to choose from; all
         combinations are played. The state is said by robot_at (an area), on_tray (objects) and
         facts ('On(mug1, placingAreaNorthTable1)'), one or a list of them. Zeros and '' stand for the
@@ -174,7 +176,7 @@ class Imagination:
             rollouts=_whole('rollouts', rollouts, 2**32 - 1), seed=_whole('seed', seed, 2**64 - 1),
             ranking=_text('ranking', ranking), min_success=_number('min_success', min_success),
             uncertainty=_text('uncertainty', uncertainty), request_id=rospy.get_name(),
-            deadline=_seconds('deadline', deadline))
+            deadline=_seconds('deadline', deadline), max_regret=_number('max_regret', max_regret))
         goal.steps = [ActionTemplate(name=_text('action', action), alternatives=[
             StringList(values=_names('argument %d' % place, argument))
             for place, argument in enumerate(arguments, 1)])]
@@ -256,4 +258,6 @@ class Imagination:
         ranking = tuple(_alternative(prediction) for prediction in result.predictions)
         recommended = ranking[result.recommended] if result.recommended >= 0 else None
         return Answer(outcome=outcome, why=result.why, ranking=ranking, recommended=recommended,
-                      caveats=tuple(result.caveats), seed=result.seed)
+                      caveats=tuple(result.caveats), seed=result.seed,
+                      probability_best=result.probability_best if result.by_cost else None,
+                      expected_regret=result.expected_regret if result.by_cost else None)

@@ -17,6 +17,7 @@ GOOD, OPEN, BAD = 'good', 'open', 'bad'
 IMAGINED = {
     'ranked': ('Recommended', GOOD),
     'ranked_at_deadline': ('Recommended, cut short by the deadline', GOOD),
+    'close': ('Recommended, but a near tie', GOOD),
     'all_failed': ('Nothing is recommended: all alternatives fail', BAD),
     'undecided': ('Undecided: more rollouts are needed', OPEN),
     'no_worker': ('No worker could be reached', BAD),

@@ -273,9 +273,9 @@ void ImaginationDesk::Finish(const SessionPtr& session) {
   ImaginedStep& step = steps_[session->step];
   const Report report = Book(session);
   step.recommended = report.recommended;
-  step.why = report.why;
   // What cuts it short is its time alone: whoever cancels it wants no answer.
   const ImagineAnswered answer = AnswerOf(session->command.request, report, true, session->things);
+  step.why = answer.why;
   End(session, ImaginedOutcomeOf(answer.outcome));
   on_answer_(answer);
 }

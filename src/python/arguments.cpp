@@ -63,6 +63,7 @@ const std::map<std::string, Wanted>& AllWanted() {
       {"deadline", number},
       {"ranking", text},
       {"min_success", number},
+      {"max_regret", number},
       {"early_stop", {"True or False", Fits<bool>}}};
   return wanted;
 }

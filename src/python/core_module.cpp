@@ -173,7 +173,7 @@ void BindAnswer(py::module_* m) {
   py::class_<Answer>(*m, "Answer", "The answer to one request.")
       .def_property_readonly(
           "outcome", [](const Answer& a) { return hires::reports::OutcomeName(a.report); },
-          "'ranked', 'ranked_at_deadline', 'all_failed', 'undecided', 'nothing_finished'")
+          "'ranked', 'ranked_at_deadline', 'close', 'all_failed', 'undecided', 'nothing_finished'")
       .def_property_readonly(
           "why", [](const Answer& a) { return a.report.why; }, "One sentence.")
       .def_property_readonly(
@@ -185,6 +185,13 @@ void BindAnswer(py::module_* m) {
             return a.report.ranking[static_cast<std::size_t>(a.report.recommended)];
           },
           "None: imagination recommends nothing.")
+      .def_property_readonly(
+          "odds",
+          [](const Answer& a) -> std::optional<std::pair<double, double>> {
+            if (!a.report.by_cost) return std::nullopt;
+            return std::make_pair(a.report.by_cost->probability, a.report.by_cost->regret);
+          },
+          "P(best) and expected regret [s] of the recommended one. None: not by cost.")
       .def_property_readonly(
           "caveats", [](const Answer& a) { return a.report.caveats; },
           "What speaks against trusting it.")
@@ -346,14 +353,15 @@ void BindScene(py::module_* m) {
              const std::string& robot_at, const std::vector<std::string>& on_tray,
              const std::vector<std::string>& facts, const Poses& put, int rollouts,
              std::uint64_t seed, int threads, double deadline, const std::string& ranking,
-             double min_success, bool early_stop) {
-            return Imagine(scene, action, arguments, {robot_at, on_tray, facts, put},
-                           {rollouts, seed, threads, deadline, ranking, min_success, early_stop});
+             double min_success, bool early_stop, double max_regret) {
+            return Imagine(
+                scene, action, arguments, {robot_at, on_tray, facts, put},
+                {rollouts, seed, threads, deadline, ranking, min_success, early_stop, max_regret});
           },
           "action"_a, "robot_at"_a, "on_tray"_a = std::vector<std::string>(),
           "facts"_a = std::vector<std::string>(), "put"_a = Poses(), "rollouts"_a = 0, "seed"_a = 1,
           "threads"_a = 0, "deadline"_a = 0.0, "ranking"_a = "", "min_success"_a = 0.0,
-          "early_stop"_a = true, kImagineHelp)
+          "early_stop"_a = true, "max_regret"_a = 0.0, kImagineHelp)
       .def(
           "record",
           [](const Scene& scene, const std::string& action, const py::args& arguments,

@@ -86,6 +86,7 @@ imagination::SchedulerParams ParamsOf(const Request& request, imagination::Sched
     params.criteria.rule = imagination::ParseRankingRule(request.ranking);
   }
   if (request.min_success != 0.0) params.criteria.min_success = request.min_success;
+  if (request.max_regret != 0.0) params.criteria.max_regret = request.max_regret;
   if (!request.early_stop) params.early_stop = false;
   imagination::CheckParams(params);
   return params;

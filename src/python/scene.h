@@ -45,6 +45,7 @@ struct Request {
   std::string ranking;
   double min_success{0.0};
   bool early_stop{true};
+  double max_regret{0.0};  ///< [s]
 };
 
 /// World, robot and objects, loaded once for many requests, from any number of threads.

@@ -213,6 +213,7 @@ TEST(CommandLineTest, ExitCodesTellOutcomesApart) {
     return ExitCodeOf(report);
   };
   EXPECT_EQ(code(imagination::ImaginationOutcome::kRanked), 0);
+  EXPECT_EQ(code(imagination::ImaginationOutcome::kClose), 0);
   EXPECT_EQ(code(imagination::ImaginationOutcome::kAllFailed), 2);
   EXPECT_EQ(code(imagination::ImaginationOutcome::kNoWorker), 3);
   EXPECT_EQ(code(imagination::ImaginationOutcome::kNothingFinished), 4);
@@ -289,6 +290,8 @@ TEST(CommandLineTest, RemoteQueriesCarryWhatWasAsked) {
                                 "thesis",
                                 "--min-success",
                                 "0.75",
+                                "--max-regret",
+                                "0.5",
                                 "--no-early-stop",
                                 "--threads",
                                 "2"},
@@ -303,6 +306,7 @@ TEST(CommandLineTest, RemoteQueriesCarryWhatWasAsked) {
   EXPECT_EQ(seen.scheduler.deadline, 3.5);
   EXPECT_EQ(seen.scheduler.criteria.rule, imagination::RankingRule::kThesis);
   EXPECT_EQ(seen.scheduler.criteria.min_success, 0.75);
+  EXPECT_EQ(seen.scheduler.criteria.max_regret, 0.5);
   EXPECT_FALSE(seen.scheduler.early_stop);
   EXPECT_EQ(seen.seed, 5u);
   EXPECT_EQ(seen.threads, 2);

@@ -58,7 +58,7 @@ TEST_F(MonitorConfigTest, BadValuesAreErrorsThatNameTheKey) {
       AllOf(HasSubstr("monitor.yaml"), HasSubstr("monitor.imagination"), HasSubstr("sometimes")));
   EXPECT_THAT(ErrorOf("overdue_factor: 3.0", "overdue_factor: 0.5"),
               HasSubstr("monitor.overdue_factor"));
-  EXPECT_THAT(ErrorOf("rollouts: 64", "rollouts: 0"), HasSubstr("imagining.rollouts"));
+  EXPECT_THAT(ErrorOf("rollouts: 400", "rollouts: 0"), HasSubstr("imagining.rollouts"));
   EXPECT_THAT(ErrorOf("ranking: \"\"", "ranking: best"), HasSubstr("imagining.ranking"));
   EXPECT_THAT(ErrorOf("silence: 5.0", "silences: 5.0"), HasSubstr("servers.silence"));
   EXPECT_THAT(ErrorOf("feedback_period: 0.2", "feedback_period: 0.2\nfeedback: 1"),

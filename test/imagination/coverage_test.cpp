@@ -19,11 +19,14 @@ using test_support::Success;
 /// True shares of success of the alternatives of one request.
 using Truths = std::vector<double>;
 
-SchedulerParams Asked(bool early_stop) {
+SchedulerParams Asked(bool early_stop, RankingRule rule) {
   SchedulerParams params;
   params.rollouts = 128;
   params.early_stop = early_stop;
   params.batch = 64;
+  params.criteria.rule = rule;
+  params.criteria.prices = {
+      {{base::FailureCode::kObjectFell, 60.0}, {base::FailureCode::kOther, 60.0}}, 300.0};
   return params;
 }
 
@@ -60,8 +63,9 @@ bool Covers(const Evidence& evidence, double truth) {
   return evidence.success.lower <= truth && truth <= evidence.success.upper;
 }
 
-Coverage Simulate(const Truths& truths, bool early_stop, int num_requests) {
-  const SchedulerParams params = Asked(early_stop);
+Coverage Simulate(const Truths& truths, bool early_stop, int num_requests,
+                  RankingRule rule = RankingRule::kRisk) {
+  const SchedulerParams params = Asked(early_stop, rule);
   Coverage coverage;
   for (int i = 0; i < num_requests; ++i) {
     const Ranking ranking = Ask(truths, params, base::Rng(1234).Fork(i));
@@ -98,6 +102,16 @@ TEST(CoverageTest, ShownIntervalsHoldTheTruthInNinetyFivePercentOfRequests) {
       // Else nothing would be stopped by what was seen, and the test could not fail.
       EXPECT_EQ(found.num_stopped_early > found.num_requests / 4, early_stop && truth > 0.5);
     }
+  }
+}
+
+TEST(CoverageTest, IntervalsOfUnequallyManyRolloutsHoldTheTruth) {
+  constexpr int kRequests = 300;
+  for (const double truth : {0.8, 0.95}) {
+    const Coverage found = Simulate({truth, truth - 0.1}, true, kRequests, RankingRule::kCost);
+    EXPECT_GE(found.num_covered, 0.95 * kRequests) << truth;
+    EXPECT_GE(found.num_other_covered, 0.95 * kRequests) << truth;
+    EXPECT_GT(found.num_stopped_early, kRequests / 4) << truth;
   }
 }
 

@@ -42,6 +42,19 @@ TEST(ImagineAnswerTest, WhatIsRecommendedComesWithItsDuration) {
   EXPECT_THAT(answer.depends_on, ElementsAre("bowl1", "mug1"));
 }
 
+TEST(ImagineAnswerTest, ANearTieIsRanked) {
+  Report report = Ranked();
+  report.outcome = ImaginationOutcome::kClose;
+  EXPECT_EQ(AnswerOf(7, report, false, {}).outcome, Outcome::kRanked);
+  EXPECT_EQ(AnswerOf(7, report, false, {}).duration, 20.0);
+  report.found = ImaginationOutcome::kClose;
+  report.outcome = ImaginationOutcome::kCancelled;
+  report.why = "slow is better; stopped by a cancellation";
+  EXPECT_EQ(AnswerOf(7, report, true, {}).outcome, Outcome::kRanked);
+  EXPECT_EQ(AnswerOf(7, report, true, {}).why,
+            "slow is better; stopped by a cancellation at its deadline");
+}
+
 TEST(ImagineAnswerTest, WhereAllFailedEachWayIsNamedWithItsMainFailure) {
   Report report = Ranked();
   report.outcome = ImaginationOutcome::kAllFailed;

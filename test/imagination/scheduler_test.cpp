@@ -74,36 +74,49 @@ int PlayAlone(const Play& play, Scheduler* scheduler, double now = 0.0) {
 
 bool IsDecided(const std::vector<std::vector<RolloutResult>>& results, int num_rollouts,
                const SchedulerParams& params) {
+  if (params.criteria.rule == RankingRule::kCost) return false;  // as all are played
   std::vector<const std::vector<RolloutResult>*> prefixes;
   for (const auto& of_one : results) prefixes.push_back(&of_one);
   return Decided(prefixes, num_rollouts, params.criteria, params.settle);
 }
 
-/// The obvious road: play everything in order, look at the looks.
+/// The obvious road: play all of a round in order, then decide.
 Ranking Sequentially(const SchedulerParams& params, int num_alternatives, const Play& play) {
+  const bool is_adaptive = params.early_stop && params.criteria.rule == RankingRule::kCost;
+  const bool is_one = is_adaptive && num_alternatives == 1;
+  const int first = params.early_stop
+                        ? std::min(params.rollouts, params.first_look * (is_one ? 4 : 1))
+                        : params.rollouts;
   std::vector<std::vector<RolloutResult>> results(num_alternatives);
-  int look = NextLook(0, params);
-  for (int n = 1; n <= params.rollouts; ++n) {
-    for (int a = 0; a < num_alternatives; ++a) results[a].push_back(play(a, n - 1));
-    if (n < look) continue;
-    const bool may_stop = params.early_stop && num_alternatives > 1;
-    if (may_stop && IsDecided(results, n, params)) break;
-    look = NextLook(n, params);
-  }
+  std::vector<int> counts(num_alternatives, first);
   Ranking ranking;
-  ranking.num_rollouts = static_cast<int>(results.front().size());
-  const bool is_fixed =
-      !params.early_stop || num_alternatives == 1 || params.first_look >= params.rollouts;
-  const auto kind = is_fixed ? IntervalKind::kClopperPearson : IntervalKind::kConfidenceSequence;
-  for (const auto& of_one : results) {
-    ranking.evidence.push_back(SumUp(of_one, ranking.num_rollouts, kind, params.criteria.prices));
+  while (true) {
+    std::vector<RolloutPrefix> request;
+    for (int a = 0; a < num_alternatives; ++a) {
+      for (int i = results[a].size(); i < counts[a]; ++i) results[a].push_back(play(a, i));
+      request.push_back({&results[a], counts[a]});
+    }
+    const bool is_fixed = first == params.rollouts || (num_alternatives == 1 && !is_adaptive);
+    ranking.evidence = SumUpRequest(
+        request, is_fixed ? IntervalKind::kClopperPearson : IntervalKind::kConfidenceSequence,
+        params.criteria.prices);
+    const std::vector<int> before = counts;
+    if (is_adaptive) {
+      const auto more = NextRound(ranking.evidence, params.criteria, params.rollouts);
+      for (int a = 0; a < num_alternatives; ++a) counts[a] += more[a];
+    } else if (num_alternatives == 1 || !IsDecided(results, counts[0], params)) {
+      counts.assign(counts.size(), NextLook(counts[0], params));
+    }
+    if (counts == before) break;
   }
+  ranking.num_rollouts = *std::min_element(counts.begin(), counts.end());
   ranking.order = Rank(ranking.evidence, params.criteria);
   ranking.recommended = Recommended(ranking.evidence, params.criteria);
   return ranking;
 }
 
 void ExpectSameEvidence(const Evidence& a, const Evidence& b) {
+  EXPECT_EQ(a.num_rollouts, b.num_rollouts);
   EXPECT_EQ(a.confidence_mean, b.confidence_mean);
   EXPECT_EQ(a.confidence_pooled, b.confidence_pooled);
   EXPECT_EQ(a.success.lower, b.success.lower);
@@ -151,6 +164,8 @@ TEST(SchedulerParamsTest, FieldsOutOfRangeAreNamed) {
   EXPECT_THAT(message_of([](auto* p) { p->max_attempts = 0; }), HasSubstr("max_attempts is 0"));
   EXPECT_THAT(message_of([](auto* p) { p->criteria.min_success = 1.0; }),
               HasSubstr("min_success is 1"));
+  EXPECT_THAT(message_of([](auto* p) { p->criteria.max_regret = -1.0; }),
+              HasSubstr("max_regret is -1, wanted between 0 and 100000"));
   EXPECT_THAT(message_of([](auto* p) { p->criteria.rule = RankingRule::kCost; }),
               HasSubstr("needs prices"));
   EXPECT_THAT(message_of([](auto* p) { p->settle.alpha = 1.0; }), HasSubstr("alpha is 1"));
@@ -177,6 +192,24 @@ TEST(SchedulerParamsTest, EveryKeyIsRead) {
   EXPECT_EQ(params.settle.alpha, 0.01);
   EXPECT_EQ(params.settle.indifference, 0.1);
   EXPECT_TRUE(params.settle.only_best);
+}
+
+TEST(SchedulerParamsTest, KeysThatCostDoesNotReadAreAcceptedWithAWarning) {
+  std::string yaml = kYaml;
+  yaml.replace(yaml.find("thesis"), 6, "cost");
+  const QuietLog log;
+  const auto params = ReadSchedulerParams(base::ParamReader::FromString(yaml, "test"));
+  EXPECT_EQ(params.settle.alpha, 0.01) << "for requests by risk";
+  EXPECT_THAT(log.lines, ElementsAre(HasSubstr("alpha does not affect `ranking: cost`"),
+                                     HasSubstr("indifference"), HasSubstr("only_best")));
+}
+
+TEST(SchedulerParamsTest, KeysOfOtherRankingsAndMaxRegretMayBeLeftOut) {
+  std::string yaml = kYaml;
+  yaml.replace(yaml.find(", alpha"), std::string::npos, ", max_regret: 0.5}");
+  const auto params = ReadSchedulerParams(base::ParamReader::FromString(yaml, "test"));
+  EXPECT_EQ(params.criteria.max_regret, 0.5);
+  EXPECT_EQ(params.settle.alpha, 0.05);
 }
 
 TEST(SchedulerParamsTest, WrongYamlIsRefused) {
@@ -298,7 +331,7 @@ TEST(SchedulerTest, BatchesGrowAndShrinkTowardsTheLook) {
     work = Only<Assign>(Complete(work[0], PlaySlowIsBetter(), 1.0, &scheduler));
   }
   EXPECT_EQ(counts.front(), 1);
-  EXPECT_EQ(counts.back(), 1);
+  EXPECT_LT(counts.back(), params.batch);
   EXPECT_EQ(*std::max_element(counts.begin(), counts.end()), params.batch);
 }
 
@@ -442,6 +475,104 @@ TEST(SchedulerTest, ThesisNeedsNoMinimum) {
   Scheduler scheduler(params, 1, 0.0);
   PlayAlone(Always(Fall()), &scheduler);
   EXPECT_EQ(scheduler.result()->outcome, ImaginationOutcome::kRanked);
+}
+
+// ---------------------------------------------------------------- by expected regret
+
+SchedulerParams ByCost(int rollouts = 400) {
+  SchedulerParams params;
+  params.rollouts = rollouts;
+  params.criteria = {
+      RankingRule::kCost,
+      0.5,
+      {{{base::FailureCode::kObjectFell, 600.0}, {base::FailureCode::kOther, 50.0}}, 300.0}};
+  return params;
+}
+
+/// Flawless ones that take so long [s].
+Play Taking(const std::vector<double>& durations) {
+  return [=](int alternative, int) { return Success(durations[alternative]); };
+}
+
+TEST(SchedulerByCostTest, StopsWhereTheExpectedRegretIsSmall) {
+  Scheduler scheduler(ByCost(), 2, 0.0);
+  PlayAlone(Taking({10.0, 200.0}), &scheduler);
+  const SchedulerResult& result = *scheduler.result();
+  EXPECT_EQ(result.outcome, ImaginationOutcome::kRanked);
+  EXPECT_EQ(result.ranking.recommended, 0);
+  EXPECT_TRUE(result.complete);
+  EXPECT_LT(result.ranking.evidence[0].num_rollouts, 100);
+  EXPECT_LE(CostOddsOf(result.ranking.evidence, scheduler.params().criteria, 0).regret, 2.0);
+}
+
+TEST(SchedulerByCostTest, NearTieIsClose) {
+  Scheduler scheduler(ByCost(), 2, 0.0);
+  PlayAlone(Taking({10.0, 10.5}), &scheduler);
+  EXPECT_EQ(scheduler.result()->outcome, ImaginationOutcome::kClose);
+  EXPECT_EQ(scheduler.result()->ranking.recommended, 0);
+  EXPECT_TRUE(scheduler.result()->complete);
+}
+
+TEST(SchedulerByCostTest, SmallerMaxRegretPlaysOnToTheMaximum) {
+  SchedulerParams params = ByCost(64);
+  params.criteria.max_regret = 0.0;
+  Scheduler scheduler(params, 2, 0.0);
+  EXPECT_EQ(PlayAlone(Taking({10.0, 10.5}), &scheduler), 128);
+  EXPECT_EQ(scheduler.result()->outcome, ImaginationOutcome::kClose);
+}
+
+TEST(SchedulerByCostTest, NoEarlyStopPlaysExactlyTheGivenNumber) {
+  SchedulerParams params = ByCost(40);
+  params.early_stop = false;
+  Scheduler scheduler(params, 2, 0.0);
+  EXPECT_EQ(PlayAlone(Taking({10.0, 90.0}), &scheduler), 80);
+  EXPECT_EQ(scheduler.result()->ranking.evidence[0].success.kind, IntervalKind::kClopperPearson);
+}
+
+TEST(SchedulerByCostTest, OneAlternativeEndsOnceItsSuccessIsDecided) {
+  Scheduler scheduler(ByCost(), 1, 0.0);
+  EXPECT_EQ(PlayAlone(Taking({10.0}), &scheduler), 64);
+  EXPECT_EQ(scheduler.result()->outcome, ImaginationOutcome::kRanked);
+  Scheduler open(ByCost(), 1, 0.0);
+  EXPECT_EQ(PlayAlone(SuccessesOf(1, 2), &open), 400);
+  EXPECT_EQ(open.result()->outcome, ImaginationOutcome::kUndecided);
+}
+
+TEST(SchedulerByCostTest, AlternativesThatFailGetNoMoreRollouts) {
+  const Play play = [](int alternative, int) {
+    return alternative == 2 ? Fall(1.0) : Success(10.0 + 0.5 * alternative);
+  };
+  Scheduler scheduler(ByCost(), 3, 0.0);
+  PlayAlone(play, &scheduler);
+  const auto& evidence = scheduler.result()->ranking.evidence;
+  EXPECT_EQ(evidence[2].num_rollouts, 16);
+  EXPECT_GT(evidence[0].num_rollouts, 32);
+  EXPECT_THAT(scheduler.result()->ranking.order, ElementsAre(0, 1, 2));
+}
+
+TEST(SchedulerByCostTest, CutShortItRestsOnWhatEachAlternativeHasAndSaysSo) {
+  SchedulerParams params = ByCost();
+  params.deadline = 12.5;
+  Scheduler scheduler(params, 2, 0.0);
+  PlayAlone(Taking({10.0, 90.0}), &scheduler);
+  const SchedulerResult& result = *scheduler.result();
+  EXPECT_FALSE(result.complete);
+  EXPECT_EQ(result.stopped_by, "the deadline");
+  EXPECT_EQ(result.ranking.evidence[0].success.kind, IntervalKind::kConfidenceSequence);
+  EXPECT_GE(result.ranking.num_rollouts, 7);
+}
+
+TEST(SchedulerByCostTest, IdleWorkersGoOnWithARoundLikeThePresentOne) {
+  Scheduler scheduler(ByCost(), 2, 0.0);
+  int given = 0, last = -1;
+  for (int worker = 0; worker < 100; ++worker) {
+    for (const Assign& work : Only<Assign>(scheduler.Handle(WorkerJoined{worker}, 0.0))) {
+      last = std::max(last, work.first_index + work.count - 1);
+      given += work.count;
+    }
+  }
+  EXPECT_EQ(given, 64);
+  EXPECT_EQ(last, 31);
 }
 
 // ---------------------------------------------------------------- cut short
@@ -947,10 +1078,10 @@ TEST(SchedulerPropertyTest, AtAnyMomentTheRankingIsThatOfTheCommonPrefix) {
     Fleet(play, 1 + rng.Index(8), 0.1, rng.Fork(2), &scheduler).Run(rng.Index(200));
     const Ranking ranking = scheduler.RankingSoFar();
     for (std::size_t a = 0; a < behaviours.size(); ++a) {
-      ASSERT_GE(static_cast<int>(scheduler.Prefix(a).size()), ranking.num_rollouts);
-      ExpectSameEvidence(ranking.evidence[a],
-                         SumUp(InventAll(behaviours[a], rng.Fork(1), ranking.num_rollouts),
-                               ranking.num_rollouts, ranking.evidence[a].success.kind));
+      const int count = ranking.evidence[a].num_rollouts;
+      ASSERT_GE(static_cast<int>(scheduler.Prefix(a).size()), count);
+      ExpectSameEvidence(ranking.evidence[a], SumUp(InventAll(behaviours[a], rng.Fork(1), count),
+                                                    count, ranking.evidence[a].success.kind));
     }
   }
 }

@@ -239,6 +239,26 @@ TEST_F(ImagineRecordingTest, OneBadGoalDoesNotSpoilTheOthers) {
                                    HasSubstr("goal g2 of /imagine (request 'cut off')")));
 }
 
+TEST_F(ImagineRecordingTest, ABagOfVersion030IsRead) {
+  const ImagineRecording recording =
+      ReadImagineRecording(HIRES_SOURCE_DIR "/test/data/replay/imagine_0.3.0.bag", "");
+  ASSERT_EQ(recording.requests.size(), 1u);
+  const RecordedRequest& request = recording.requests.front();
+  EXPECT_EQ(request.goal_id, "g1");
+  EXPECT_EQ(request.goal.steps.at(0).name, "move_base_param");
+  EXPECT_EQ(request.goal.rollouts, 64u);
+  EXPECT_EQ(request.goal.request_id, "recorded with 0.3.0");
+  EXPECT_TRUE(request.goal.play_afresh);
+  EXPECT_EQ(request.goal.max_regret, 0.0) << "the client's default";
+  EXPECT_EQ(request.result.outcome, ImagineResult::RANKED);
+  ASSERT_EQ(request.result.predictions.size(), 2u);
+  EXPECT_EQ(request.result.predictions[0].durations, (std::vector<double>{15.0, 16.4}));
+  ASSERT_EQ(request.result.by_cost.size(), 1u);
+  EXPECT_EQ(request.result.by_cost[0].probability, 0.81);
+  EXPECT_EQ(request.result.simulated_seconds_kept, 47.0);
+  EXPECT_EQ(request.result.expected_regret, 0.0);
+}
+
 TEST_F(ImagineRecordingTest, MessagesOfAnotherVersionAreNamed) {
   const std::string md5sum(32, '7');
   Write(std::pair{"/imagine/goal", Raw("hires/ImagineActionGoal", md5sum, {1, 2, 3})});

@@ -45,15 +45,20 @@ TEST(ReportJsonTest, WhatStandsBehindACostIsToldByPlacesOfTheRanking) {
   reasons.prices = {{base::FailureCode::kObjectFell, 600.0}};
   reasons.next = imagination::CostComparison{1, -5.75, -150.0, 12.5, false, 0.875};
   reasons.turning = imagination::TurningPrice{base::FailureCode::kObjectFell, 23.0, true, 1};
+  reasons.probability = 0.75;
+  reasons.regret = 1.5;
+  reasons.until_settled = 250;
   report.by_cost = reasons;
   EXPECT_EQ(ToJson(report).at("by_cost").dump(),
-            R"({"prices":[{"failure":"object_fell","price":600.0}],)"
+            R"({"probability_best":0.75,"expected_regret":1.5,"rollouts_to_settle":250,)"
+            R"("prices":[{"failure":"object_fell","price":600.0}],)"
             R"("next":{"place":1,"time_saved":-5.75,"failures_more":-150.0,)"
-            R"("failures_more_upper":12.5,"neither_failed":false,"alike":false,)"
-            R"("probability":0.875},)"
+            R"("failures_more_upper":12.5,"neither_failed":false,"probability":0.875},)"
             R"("turns":{"failure":"object_fell","price":23.0,"when":"less","place":1}})");
   report.by_cost = imagination::CostReasons();
-  EXPECT_EQ(ToJson(report).at("by_cost").dump(), R"({"prices":[],"next":null,"turns":null})");
+  EXPECT_EQ(ToJson(report).at("by_cost").dump(),
+            R"({"probability_best":1.0,"expected_regret":0.0,"rollouts_to_settle":null,)"
+            R"("prices":[],"next":null,"turns":null})");
 }
 
 TEST(ReportJsonTest, MinSuccessIsToldUnlessTheRuleAsksForNone) {
@@ -75,6 +80,8 @@ TEST(ReportJsonTest, OutcomesHaveNames) {
   };
   EXPECT_EQ(name(ImaginationOutcome::kRanked, true), "ranked");
   EXPECT_EQ(name(ImaginationOutcome::kRanked, false), "ranked_at_deadline");
+  EXPECT_EQ(name(ImaginationOutcome::kClose, true), "close");
+  EXPECT_EQ(name(ImaginationOutcome::kClose, false), "close");
   EXPECT_EQ(name(ImaginationOutcome::kAllFailed, true), "all_failed");
   EXPECT_EQ(name(ImaginationOutcome::kUndecided, true), "undecided");
   EXPECT_EQ(name(ImaginationOutcome::kNoWorker, false), "no_worker");

@@ -316,7 +316,13 @@ TEST(ConversionsTest, WhatStandsBehindACostTravels) {
   report.by_cost->prices = {{FailureCode::kObjectFell, 600.0}, {FailureCode::kNoPath, 60.0}};
   report.by_cost->next = imagination::CostComparison{1, -5.0, -46.5, 12.5, true, 0.875};
   report.by_cost->turning = imagination::TurningPrice{FailureCode::kObjectFell, 64.0, false, 2};
+  report.by_cost->probability = 0.75;
+  report.by_cost->regret = 1.5;
+  report.by_cost->until_settled = 250;
   const imagination::CostReasons back = *FromMsg(ToMsg(report)).by_cost;
+  EXPECT_EQ(back.probability, 0.75);
+  EXPECT_EQ(back.regret, 1.5);
+  EXPECT_EQ(back.until_settled, 250);
   EXPECT_EQ(back.prices, report.by_cost->prices);
   EXPECT_EQ(back.next->other, 1);
   EXPECT_EQ(back.next->time_saved, -5.0);
@@ -328,6 +334,18 @@ TEST(ConversionsTest, WhatStandsBehindACostTravels) {
   EXPECT_EQ(back.turning->price, 64.0);
   EXPECT_FALSE(back.turning->is_below);
   EXPECT_EQ(back.turning->other, 2);
+}
+
+TEST(ConversionsTest, ANearTieTravelsWithItsEnd) {
+  imagination::Report report;
+  report.outcome = imagination::ImaginationOutcome::kClose;
+  for (const bool complete : {true, false}) {
+    report.complete = complete;
+    const hires::ImagineResult message = ToMsg(report);
+    EXPECT_EQ(message.outcome, hires::ImagineResult::CLOSE);
+    EXPECT_EQ(FromMsg(message).outcome, imagination::ImaginationOutcome::kClose);
+    EXPECT_EQ(FromMsg(message).complete, complete);
+  }
 }
 
 TEST(ConversionsTest, UndecidedAndCaveatsTravel) {
@@ -393,6 +411,8 @@ TEST(ImagineRequestTest, WhatAGoalSaysWinsOverTheDefaults) {
   EXPECT_EQ(params.batch, 3);
   EXPECT_EQ(params.criteria.rule, imagination::RankingRule::kThesis);
   EXPECT_TRUE(params.early_stop);
+  EXPECT_EQ(params.criteria.max_regret, 2.0);
+  goal.max_regret = 0.5;
   goal.ranking = "risk";
   goal.play_all = true;
   goal.deadline = ros::Duration(2.5);
@@ -400,6 +420,7 @@ TEST(ImagineRequestTest, WhatAGoalSaysWinsOverTheDefaults) {
   EXPECT_EQ(params.criteria.rule, imagination::RankingRule::kRisk);
   EXPECT_FALSE(params.early_stop);
   EXPECT_EQ(params.deadline, 2.5);
+  EXPECT_EQ(params.criteria.max_regret, 0.5);
   defaults.early_stop = false;
   goal.play_all = false;
   EXPECT_FALSE(RequestOf(goal, Restaurant(), defaults).params.early_stop);

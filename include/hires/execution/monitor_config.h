@@ -11,7 +11,7 @@ namespace hires::execution {
 
 /// What a request to imagine says beside the action and its state.
 struct ImaginingParams {
-  int rollouts{64};     ///< per combination of alternatives, at most
+  int rollouts{400};    ///< per combination of alternatives, at most
   std::string ranking;  ///< "cost", "risk", "thesis"; empty: imagination's own default
   std::uint64_t seed{1};
 };

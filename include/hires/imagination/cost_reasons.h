@@ -9,31 +9,19 @@
 
 namespace hires::imagination {
 
-/// One alternative against another one by what they cost, rollout by rollout: those of one index
-/// have the same seed. All means [s] are of those rollouts.
+/// One alternative against another one by what they cost, as far as their posteriors tell.
 struct CostComparison {
   int other{-1};                    ///< index of the alternative that it is compared with
-  double time_saved{0.0};           ///< CostOfTime of the other one less its own
-  double failures_more{0.0};        ///< price of its failures less those of the other one
-  double failures_more_upper{0.0};  ///< upper end of the 95 % interval, valid at every number of
-                                    ///< rollouts; failures that were not seen are weighed in it
+  double time_saved{0.0};           ///< [s] mean duration of the other one less its own
+  double failures_more{0.0};        ///< [s] expected penalty of its failures less the other's
+  double failures_more_upper{0.0};  ///< [s] upper end of the 95 % interval, valid as the intervals
+                                    ///< of success are
   bool neither_failed{false};
-  double probability{0.0};  ///< that it costs less than the other one, see CompareCosts
-
-  /// It is the quicker one, and its failures are no reason to take the other one.
-  bool IsAlike() const {
-    return time_saved > 0.0 && (neither_failed || failures_more_upper < time_saved);
-  }
+  double probability{0.0};  ///< that its expected cost is lower
 };
 
-/// The probability takes seconds as they were measured. Rollouts in which the failure of one is
-/// dearer than that of the other are Dirichlet distributed with half a rollout of each kind added
-/// (Jeffreys), each kind with its mean difference of prices; of a kind that was never seen, with
-/// the dearest failure that either had, or else with the dearest of all.
-/// @pre 1 <= num_rollouts, and as many results; prices are not empty.
-CostComparison CompareCosts(const std::vector<RolloutResult>& results,
-                            const std::vector<RolloutResult>& other, int num_rollouts,
-                            const Prices& prices);
+/// @pre both are priced.
+CostComparison CompareCosts(const Evidence& its, const Evidence& other);
 
 /// The price at which another alternative would be recommended, all other prices staying.
 struct TurningPrice {
@@ -50,21 +38,24 @@ std::optional<TurningPrice> TurningPriceOf(const std::vector<Evidence>& alternat
 
 /// What stands behind a recommendation by cost.
 struct CostReasons {
+  double probability{1.0};           ///< P(best), see CostOddsOf
+  double regret{0.0};                ///< [s] expected opportunity cost
+  std::optional<int> until_settled;  ///< of a near tie, see RolloutsToSettle
   /// Of failures that occurred in alternatives that are good enough: those that were weighed; of
-  /// a fall where none did, but more than one is good enough.
+  /// the assumed failure (PseudoPenalty) where none did, but more than one is good enough.
   std::map<base::FailureCode, double> prices;
   std::optional<CostComparison> next;  ///< with the next one of the order, if it is good enough
   std::optional<TurningPrice> turning;
   /// All rollouts are of one and the same truth: how many there are says nothing of what may have
   /// stayed unseen.
   bool is_one_truth{false};
+
+  bool IsClose() const { return probability < kSettledProbability; }
 };
 
 /// None where the rule is not kCost or nothing is recommended.
-/// @param results  per alternative the rollouts behind its evidence, or more.
-std::optional<CostReasons> CostReasonsOf(
-    const std::vector<const std::vector<RolloutResult>*>& results,
-    const std::vector<Evidence>& alternatives, const Criteria& criteria);
+std::optional<CostReasons> CostReasonsOf(const std::vector<Evidence>& alternatives,
+                                         const Criteria& criteria);
 
 /// "a fall costs 600 s, no_path costs 60 s".
 std::string PriceSentence(const CostReasons& reasons);

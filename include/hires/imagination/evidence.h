@@ -76,4 +76,9 @@ Evidence SumUp(const std::vector<RolloutResult>& results);
 Evidence SumUp(const std::vector<RolloutResult>& results, int num_rollouts,
                IntervalKind kind = IntervalKind::kClopperPearson, const Prices& prices = {});
 
+/// All alternatives of one request: where nothing or little failed, the penalty of a failure is
+/// that of the request (PseudoPenalty).
+std::vector<Evidence> SumUpRequest(const std::vector<RolloutPrefix>& request, IntervalKind kind,
+                                   const Prices& prices);
+
 }  // namespace hires::imagination

@@ -8,7 +8,9 @@
 
 #include "hires/base/failure.h"
 #include "hires/base/param_reader.h"
+#include "hires/imagination/expected_regret.h"
 #include "hires/imagination/rollout_result.h"
+#include "hires/imagination/success_interval.h"
 
 namespace hires::imagination {
 
@@ -50,18 +52,33 @@ double PriceOf(base::FailureCode code, const Prices& prices);
 /// [s] CostOfTime plus the price of the rollout's failure.  @pre prices are not empty.
 double CostOf(const RolloutResult& result, const Prices& prices);
 
-/// What rollouts cost in the mean, as far as played ones tell [s].
+/// Expected cost of one alternative, as far as its rollouts tell [s].
 struct ExpectedCost {
-  double mean{0.0};
+  double mean{0.0};   ///< posterior.Mean()
   double lower{0.0};  ///< lower end of the 95 % interval
   double upper{0.0};  ///< upper end of the 95 % interval
+  CostPosterior posterior;
 };
 
-/// The interval is a confidence sequence (MeanSequence) over [0, prices.Highest()], valid at every
-/// number of rollouts: what was never seen and is dear (one fall in 100, say) widens it.
-/// @param results  the first rollouts of one alternative.
-/// @return none: no prices, or no rollout.  @pre 0 <= num_rollouts <= results.size().
-std::optional<ExpectedCost> EstimateCost(const std::vector<RolloutResult>& results,
-                                         int num_rollouts, const Prices& prices);
+/// The first `num_rollouts` rollouts of one alternative.
+struct RolloutPrefix {
+  const std::vector<RolloutResult>* results;
+  int num_rollouts;  ///< 0 .. results->size()
+};
+
+/// [s] penalty of the one pseudo-failure that each alternative of a request is given: the mean over
+/// all failures of the request; without failures that of dropping the payload, or `other` where no
+/// rollout watched one.  @pre prices are not empty.
+double PseudoPenalty(const std::vector<RolloutPrefix>& request, const Prices& prices);
+
+/// If few failed, all alike and no cheaper than dropping the payload, the 95 % interval adds one of
+/// the mean duration (an asymptotic confidence sequence [Waudby-Smith et al. 2024, Ann. Stat.
+/// 52:2613-2640], cut at the time limit) and the penalty times one of the probability of failing
+/// (EstimateSuccess). Else it is a MeanSequence of costs. It never reaches below the shortest
+/// duration that was observed, and is valid at every number of rollouts, as far as `kind` is.
+/// @return none: no prices, or no rollout.
+std::optional<ExpectedCost> EstimateCost(const RolloutPrefix& rollouts, const Prices& prices,
+                                         double pseudo_penalty,
+                                         IntervalKind kind = IntervalKind::kConfidenceSequence);
 
 }  // namespace hires::imagination

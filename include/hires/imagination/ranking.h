@@ -15,7 +15,8 @@ struct CostReasons;  // cost_reasons.h
 /// By what alternatives are ordered; a later criterion decides where the earlier ones are equal.
 enum class RankingRule {
   kRisk,   ///< lower bound of success, then mean Eq. 6.1, then mean duration
-  kCost,   ///< those that reach min_success first, then expected cost, then mean Eq. 6.1
+  kCost,   ///< those that reach min_success first, then expected cost, then mean Eq. 6.1; each
+           ///< alternative may have its own number of rollouts
   kThesis  ///< action failed in most rollouts: out; then mean Eq. 6.1, then mean duration
 };
 
@@ -30,11 +31,17 @@ struct Criteria {
   /// Share of successes that the lower end of the interval must reach; in (0, 1). Not for kThesis.
   double min_success{0.5};
   Prices prices;  ///< needed by kCost (ReadPrices); else they only fill Evidence::cost
+  /// [s] kCost alone: expected opportunity cost of the cheapest alternative at which rollouts stop.
+  double max_regret{2.0};
 };
+
+/// Under kCost a recommendation with a lower probability of being the cheapest is a near tie.
+inline constexpr double kSettledProbability{0.95};
 
 /// Indices of the alternatives, best first. Full equals keep their order, an alternative without
 /// any finished rollout is slower than every other. Under kThesis the ones that are out come last.
-/// @pre all rest on the same number of rollouts (paired by index), and are priced for kCost.
+/// @pre all rest on the same number of rollouts (paired by index); for kCost instead they are
+/// priced (SumUpRequest).
 /// @throws std::logic_error
 std::vector<int> Rank(const std::vector<Evidence>& alternatives, const Criteria& criteria);
 
@@ -47,11 +54,34 @@ std::optional<int> Recommended(const std::vector<Evidence>& alternatives, const 
 /// Rank.
 bool AllFail(const std::vector<Evidence>& alternatives, const Criteria& criteria);
 
+/// Under kCost: indices of the alternatives that reach min_success or may do so.
+std::vector<int> Candidates(const std::vector<Evidence>& alternatives, const Criteria& criteria);
+
+/// Of one candidate among all.
+struct CostOdds {
+  double probability{1.0};  ///< P(best): that it has the lowest expected cost
+  double regret{0.0};       ///< [s] expected opportunity cost
+};
+CostOdds CostOddsOf(const std::vector<Evidence>& alternatives, const Criteria& criteria, int best);
+
+/// About how many rollouts of each candidate would give one of them kSettledProbability; none: more
+/// than kMostRollouts.  @pre kCost, at least one candidate.
+std::optional<int> RolloutsToSettle(const std::vector<Evidence>& alternatives,
+                                    const Criteria& criteria);
+
+/// Under kCost: how many more rollouts each alternative gets before the next decision. Only zeros:
+/// all alternatives fail, the expected regret of the recommended one is at most max_regret [EOC,
+/// Branke, Chick, Schmidt 2007, Manage. Sci. 53:1916-1932], or there is no room. While none is
+/// recommended, those that may reach min_success share the round equally, else see AllocateRound.
+/// @param most  of each alternative in all.  @pre each has at least one rollout.
+std::vector<int> NextRound(const std::vector<Evidence>& alternatives, const Criteria& criteria,
+                           int most);
+
 /// One sentence for people with the numbers that decided, also where nothing is recommended; where
 /// nothing is decided, with about how many rollouts would.
 /// @param names  one per alternative, as people call them ("slow").
-/// @param reasons  under kCost (see CostReasonsOf): how sure it is, prices, where the answer turns;
-///                 without them it tells the expected costs alone.
+/// @param reasons  under kCost (see CostReasonsOf): P(best), expected regret, penalties, where the
+///                 answer turns; without them it names the expected costs alone.
 /// @pre names.size() == alternatives.size(), and as Rank.
 std::string WhyRecommended(const std::vector<Evidence>& alternatives, const Criteria& criteria,
                            const std::vector<std::string>& names,
@@ -81,16 +111,15 @@ struct SettleParams {
 /// order costs less than the indifference. Durations have no bound, so the difference is taken of
 /// their signs: who was quicker, 1 or -1, 0 for equal or both failed; the one that failed is
 /// slower. Under kThesis being in or out must be certain for both (share of failed actions against
-/// 1/2). Under kCost the first must reach min_success and the other lie below it, or the paired
-/// difference of costs exclude 0 (no indifference: equal costs are played to the end); both below
-/// is settled.
+/// 1/2).
 ///
 /// The error probability alpha is divided by the number of all sequences there are (every pair
 /// with every criterion, every alternative where one is judged alone), so it covers all
 /// alternatives and all looks together, however often this is called with growing prefixes of the
 /// same rollouts. One alternative alone is always settled.
 /// @param results  per alternative its rollouts in index order, each at least num_rollouts long.
-/// @pre num_rollouts >= 1; params within their ranges.  @throws std::logic_error if broken.
+/// @pre not kCost (see NextRound); num_rollouts >= 1; params within their ranges.
+/// @throws std::logic_error if broken.
 bool Settled(const std::vector<std::vector<RolloutResult>>& results, int num_rollouts,
              const Criteria& criteria, const SettleParams& params);
 

@@ -21,16 +21,20 @@ struct SchedulerParams {
   double worker_wait{10.0};  ///< [s] to wait while there is no worker before giving up, >= 0
   bool early_stop{true};     ///< stop at the first look at which the answer is decided
   Criteria criteria;
-  int first_look{16};  ///< looks are at first_look, twice that, four times that, ...; >= 1
-  int batch{4};        ///< at most so many rollouts per assignment, 1..1000
+  /// kRisk, kThesis: looks are at first_look, twice that, four times that, ...; kCost: rollouts of
+  /// each alternative in the first round; >= 1.
+  int first_look{16};
+  int batch{4};  ///< at most so many rollouts per assignment, 1..1000
   /// A rollout that was given up so often by a failed assignment or a lost worker is unplayable and
   /// counts as failed (unplayable), so that one that kills its worker ends; 1..100.
   int max_attempts{5};
   SettleParams settle;
 };
 
-/// Reads every field; keys as the fields are called, `ranking` for the rule, and min_success,
-/// alpha, indifference, only_best. Prices have a file of their own: the caller fills them in.
+/// Reads every field; keys as the fields are called, `ranking` for the rule, min_success, and
+/// optionally max_regret, alpha, indifference, only_best. The last three do not affect
+/// `ranking: cost`, so that there they cause a warning. Prices have a file of their own: the caller
+/// fills them in.
 /// @throws base::ConfigError naming file, key and bounds.
 SchedulerParams ReadSchedulerParams(base::ParamReader in);
 
@@ -83,6 +87,7 @@ using Command = std::variant<Assign, CancelAssignment>;
 
 enum class ImaginationOutcome {
   kRanked,           ///< there is a recommendation
+  kClose,            ///< kCost: there is one, but with less than kSettledProbability: a near tie
   kAllFailed,        ///< no alternative is good enough, as far as rollouts can tell
   kUndecided,        ///< rollouts were played, too few to tell whether one is good enough
   kNoWorker,         ///< nothing was compared, because there was no worker
@@ -91,13 +96,14 @@ enum class ImaginationOutcome {
 };
 std::string ToString(ImaginationOutcome outcome);
 
-/// The alternatives after their first num_rollouts rollouts each.
+/// The alternatives after as many rollouts as their evidence counts: under kRisk and kThesis
+/// equally many.
 struct Ranking {
   std::vector<Evidence> evidence;  ///< per alternative
   std::vector<int> order;          ///< best first
   std::optional<int> recommended;
-  int num_rollouts{
-      0};  ///< of each alternative; 0: nothing is known, `order` is that of the request
+  int num_rollouts{0};  ///< of each alternative at least; 0: nothing is known, `order` is that of
+                        ///< the request
 };
 
 struct SchedulerResult {
@@ -105,7 +111,8 @@ struct SchedulerResult {
   /// Of a cancelled request: what the rollouts that were finished say, by the rule of every other
   /// end; kCancelled where none was. Else as `outcome`.
   ImaginationOutcome found{ImaginationOutcome::kCancelled};
-  bool complete{false};  ///< the answer was decided or all rollouts played; false: cut short
+  bool complete{false};    ///< the answer was decided or all rollouts played; false: cut short
+  std::string stopped_by;  ///< where it was cut short: "the deadline", ...
   int num_unplayable{
       0};  ///< rollouts behind the ranking that count as failed as no worker got them done
   Ranking ranking;
@@ -131,22 +138,27 @@ int NextLook(int num_rollouts, const SchedulerParams& params);
 /// answer is known. A state machine: events and time [s, any steady clock] come in, commands come
 /// out, it has no thread and no clock.
 ///
-/// Rollout i of every alternative has the same seed, so alternatives are compared by pairs. A
-/// decision rests on the first n rollouts of each and is taken at the looks alone; what came beyond
-/// is thrown away. Hence the answer is the same for any number of workers, any order of arrival and
-/// any loss of workers, unless the deadline, a lack of workers or Cancel() cut it short; then it
-/// rests on the longest prefix that all alternatives have.
+/// Rollout i of every alternative has the same seed, so alternatives are compared by pairs.
+/// Rollouts are played in rounds: under kRisk and kThesis from look to look, equally many of each
+/// alternative; under kCost as NextRound splits them. A decision is taken after complete rounds
+/// alone; what came beyond is thrown away. Hence the answer is the same for any number of workers,
+/// any order of arrival and any loss of workers, unless the deadline, a lack of workers or Cancel()
+/// cut it short; then it rests on the longest prefix that all alternatives have; under kCost with
+/// an early stop on that of each.
 ///
-/// Work is given out by look, then index, then alternative, in small batches (single rollouts at
-/// first, so that there is a ranking soon, and towards the end of a look, so that all workers end
-/// together). Who has nothing to do in the present look begins the next one, but none beyond it.
+/// Work is given out by round, then index, then alternative, in small batches (single rollouts at
+/// first, so that there is a ranking soon, and towards the end of a round, so that all workers end
+/// together). Who has nothing to do in the present round begins the next one, but none beyond it;
+/// under kCost the next one is assumed to be as the present one.
 ///
-/// A single alternative is played to the end. It stops early only where the answer is decided (see
-/// Decided): an order that is settled, while it is unknown whether the first is good enough, is
-/// not.
+/// A single alternative is played to the end; under kCost its first round is four times first_look,
+/// and it ends once success is decided. Several stop early only where the answer is decided (see
+/// Decided, NextRound): an order that is settled, while it is unknown whether the first is good
+/// enough, is not.
 ///
 /// Intervals are Clopper-Pearson's where the number of rollouts was fixed beforehand and all were
-/// played (no early stop, one alternative, or no look before the last), else confidence sequences.
+/// played (no early stop, one alternative but for kCost, or no look before the last), else
+/// confidence sequences, each valid at its alternative's own number of rollouts.
 class Scheduler {
  public:
   /// @param now  [s] start; the deadline counts from here.
@@ -172,7 +184,7 @@ class Scheduler {
   bool finished() const { return result_.has_value(); }
   const std::optional<SchedulerResult>& result() const { return result_; }
 
-  /// The ranking over the longest prefix that all alternatives have now.
+  /// The ranking over the longest prefix that all alternatives have now; under kCost, each has.
   Ranking RankingSoFar() const;
   Progress ProgressAt(double now) const;
 
@@ -227,21 +239,24 @@ class Scheduler {
   void CountFailure(int worker, const std::string& reason);
   void CheckRepeated(const RolloutFinished& event);
 
+  bool IsAdaptive() const;
   void Decide();
-  int CommonPrefix() const;
-  bool IsDecidedAt(int look) const;
-  IntervalKind KindAt(int num_rollouts) const;
-  int EndOfWork() const;
+  std::vector<int> Prefixes() const;
+  int FirstRound() const;
+  std::vector<int> AfterRound(const Ranking& ranking) const;
+  IntervalKind KindAt(const std::vector<int>& counts) const;
+  std::vector<int> EndsOfNextRound() const;
   void AssignToAll(double now);
-  bool AssignTo(int worker);
-  int BatchSize(int first_index, int end_of_look) const;
+  bool AssignTo(int worker, const std::vector<int>& ends);
+  int BatchSize(int first_index, const std::vector<int>& ends) const;
   bool HasUsableWorker() const;
   void NoteWorkers(double now);
 
-  Ranking RankFirst(int num_rollouts) const;
-  void FinishWith(int num_rollouts, bool complete);
-  void CutShort(ImaginationOutcome if_nothing);
-  void Finish(ImaginationOutcome outcome, bool complete, int num_rollouts);
+  Ranking RankFirst(const std::vector<int>& counts) const;
+  ImaginationOutcome OutcomeOf(const Ranking& ranking) const;
+  void CutShort(ImaginationOutcome if_nothing, const std::string& by);
+  void Finish(ImaginationOutcome outcome, bool complete, Ranking ranking,
+              const std::string& stopped_by = "");
   std::optional<double> DeadlineAt() const;
   std::vector<Command> TakeCommands();
 
@@ -251,7 +266,8 @@ class Scheduler {
   std::map<int, Worker> workers_;
   std::map<int, Assignment> assignments_;
   int next_assignment_{1};
-  int decided_{0};                         // the last look that was not settled
+  std::vector<int> ends_;                  // of the present round, per alternative
+  std::vector<int> begins_;                // the rollouts of each before it
   std::optional<double> without_workers_;  // since when
   std::optional<double> work_began_;
   std::vector<Command> commands_;

@@ -2,11 +2,11 @@
 
 #include <utility>
 
-#include "lab/src/seed.h"
 #include "hires/base/process.h"
 #include "hires/base/resource_use.h"
 #include "hires/base/rng.h"
 #include "hires/imagination/local_imagination.h"
+#include "lab/src/seed.h"
 
 namespace hires::lab {
 namespace {
@@ -44,10 +44,14 @@ class RolloutBook {
     return played_.at({alternative, index}).result;
   }
 
-  /// Adds what the first rollouts of each alternative took.
-  void AddEffort(int num_rollouts, Decided* to) const {
+  /// Adds what the rollouts behind an answer took.
+  void AddEffort(const Report& report, Decided* to) const {
+    std::map<int, int> counts;  // by alternative
+    for (const imagination::Prediction& prediction : report.ranking) {
+      counts[prediction.alternative] = prediction.evidence.num_rollouts;
+    }
     for (const auto& [key, played] : played_) {
-      if (key.second >= num_rollouts) continue;
+      if (key.second >= counts[key.first]) continue;
       to->simulated_seconds += played.result.simulated;
       to->wall_seconds += played.wall_seconds;
       to->processor_seconds += played.processor_seconds;
@@ -138,7 +142,7 @@ bool AskByCost(const DecisionTask& task, const DecisionParts& parts, RolloutBook
     if (!report) return false;
     decided.advice.push_back(AdviceOf(*report));
     if (decided.advice.size() > 1) continue;
-    book->AddEffort(report->ranking.front().evidence.num_rollouts, &decided);
+    book->AddEffort(*report, &decided);
     imagined->drives = DrivesOf(*report, *book);
   }
   return true;
@@ -151,7 +155,7 @@ bool AskOnce(const DecisionTask& task, const DecisionParts& parts, RolloutBook* 
   if (!report) return false;
   Decided& decided = imagined->decided[kDissertationArm];
   decided.advice.assign(PriceScales().size(), AdviceOf(*report));
-  book->AddEffort(1, &decided);
+  book->AddEffort(*report, &decided);
   return true;
 }
 

@@ -58,9 +58,9 @@ ImaginedDrive ParseDrive(const ordered_json& json) {
 
 ImaginationOutcome ParseOutcome(const std::string& word) {
   std::vector<std::string> words;
-  for (const auto outcome :
-       {ImaginationOutcome::kRanked, ImaginationOutcome::kAllFailed, ImaginationOutcome::kUndecided,
-        ImaginationOutcome::kNoWorker, ImaginationOutcome::kNothingFinished}) {
+  for (const auto outcome : {ImaginationOutcome::kRanked, ImaginationOutcome::kClose,
+                             ImaginationOutcome::kAllFailed, ImaginationOutcome::kUndecided,
+                             ImaginationOutcome::kNoWorker, ImaginationOutcome::kNothingFinished}) {
     words.push_back(imagination::ToString(outcome));
     if (words.back() == word) return outcome;
   }

@@ -54,8 +54,8 @@ void Add(const imagination::SchedulerParams& params, Hasher* hasher) {
        static_cast<double>(first_look), static_cast<double>(batch),
        static_cast<double>(max_attempts)},
       hasher);
-  const auto& [rule, min_success, prices] = criteria;
-  Add({static_cast<double>(rule), min_success}, hasher);
+  const auto& [rule, min_success, prices, max_regret] = criteria;
+  Add({static_cast<double>(rule), min_success, max_regret}, hasher);
   Add(prices, hasher);
   const auto& [alpha, indifference, only_best] = settle;
   Add({alpha, indifference, only_best ? 1.0 : 0.0}, hasher);

@@ -172,7 +172,8 @@ bool HasArm(const std::vector<std::string>& arms, const std::string& arm) {
 
 std::string ChoiceOf(const Advice& advice, const std::string& arm, const std::string& by_default) {
   using Outcome = imagination::ImaginationOutcome;
-  if (advice.outcome == Outcome::kRanked || advice.outcome == Outcome::kUndecided) {
+  if (advice.outcome == Outcome::kRanked || advice.outcome == Outcome::kClose ||
+      advice.outcome == Outcome::kUndecided) {
     return advice.first;
   }
   const bool is_banned = advice.outcome == Outcome::kAllFailed && arm != kDissertationArm;

@@ -3,58 +3,15 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <boost/math/distributions/beta.hpp>
 #include <cmath>
 
 #include "hires/base/check.h"
 #include "hires/base/text.h"
-#include "imagination/answer/confidence_sequence.h"
 
 namespace hires::imagination {
 namespace {
 
 using base::FailureCode;
-
-/// Rollouts in which the failure of one was dearer than that of the other.
-struct Dearer {
-  int count{0};
-  double sum{0.0};  // [s] of the differences
-
-  void Add(double difference) {
-    ++count;
-    sum += difference;
-  }
-  double MeanOr(double unseen) const { return count > 0 ? sum / count : unseen; }
-};
-
-double Share(double a, double b, double x) {
-  return boost::math::cdf(boost::math::beta_distribution<>(a, b), std::clamp(x, 0.0, 1.0));
-}
-
-/// That the failures of one cost less than `saved` more than those of the other: the share of
-/// rollouts that tell them apart is one beta distribution, whose midpoints of equal weight are
-/// summed up, and to whom those fall is another one.
-double ProbabilityOf(double saved, const Dearer& its, const Dearer& others, int num_rollouts,
-                     double unseen) {
-  const double own_price = its.MeanOr(unseen), other_price = others.MeanOr(unseen);
-  if (own_price + other_price <= 0.0) return saved > 0.0 ? 1.0 : saved < 0.0 ? 0.0 : 0.5;
-  constexpr int kMidpoints = 200;
-  const int apart = its.count + others.count;
-  const boost::math::beta_distribution<> share_apart(apart + 1.0, num_rollouts - apart + 0.5);
-  double sum = 0.0;
-  for (int i = 0; i < kMidpoints; ++i) {
-    const double share = boost::math::quantile(share_apart, (i + 0.5) / kMidpoints);
-    const double bound = (saved / share + other_price) / (own_price + other_price);
-    sum += Share(its.count + 0.5, others.count + 0.5, bound);
-  }
-  return sum / kMidpoints;
-}
-
-double HighestPrice(const Prices& prices) {
-  double highest = 0.0;
-  for (const auto& [code, price] : prices.of) highest = std::max(highest, price);
-  return highest;
-}
 
 std::map<FailureCode, int> CountsOf(const Evidence& evidence) {
   std::map<FailureCode, int> counts;
@@ -84,68 +41,69 @@ std::string PriceText(double price) {
 
 }  // namespace
 
-CostComparison CompareCosts(const std::vector<RolloutResult>& results,
-                            const std::vector<RolloutResult>& other, int num_rollouts,
-                            const Prices& prices) {
-  HIRES_CHECK(num_rollouts >= 1 && !prices.empty(), "nothing was played, or nothing is priced");
-  const double highest = HighestPrice(prices);
-  MeanSequence more(-highest - 1e-9, highest + 1e-9, kAlpha);  // prices may all be 0
-  Dearer its, others;
-  double saved = 0.0, dearest_seen = 0.0;
-  bool failed = false;
-  for (int i = 0; i < num_rollouts; ++i) {
-    const base::Failure own_failure = FailureOf(results[i]), other_failure = FailureOf(other[i]);
-    const double own_price = PriceOf(own_failure.code, prices);
-    const double other_price = PriceOf(other_failure.code, prices);
-    saved += CostOfTime(other[i].duration, prices) - CostOfTime(results[i].duration, prices);
-    failed = failed || own_failure || other_failure;
-    dearest_seen = std::max({dearest_seen, own_price, other_price});
-    more.Add(own_price - other_price);
-    if (own_price > other_price) its.Add(own_price - other_price);
-    if (other_price > own_price) others.Add(other_price - own_price);
-  }
+CostComparison CompareCosts(const Evidence& its, const Evidence& other) {
+  HIRES_CHECK(its.cost && other.cost, "nothing was played, or nothing is priced");
+  const CostPosterior& own = its.cost->posterior;
+  const CostPosterior& others = other.cost->posterior;
   CostComparison comparison;
-  comparison.time_saved = saved / num_rollouts;
-  comparison.failures_more = (its.sum - others.sum) / num_rollouts;
-  comparison.failures_more_upper = std::max(comparison.failures_more, more.Bounds().upper);
-  comparison.neither_failed = !failed;
-  comparison.probability = ProbabilityOf(comparison.time_saved, its, others, num_rollouts,
-                                         failed ? dearest_seen : highest);
+  comparison.time_saved = others.duration - own.duration;
+  comparison.failures_more =
+      own.FailureProbability() * own.penalty - others.FailureProbability() * others.penalty;
+  comparison.failures_more_upper =
+      std::max(comparison.failures_more, (1.0 - its.success.lower) * own.penalty -
+                                             (1.0 - other.success.upper) * others.penalty);
+  comparison.neither_failed = own.failures + others.failures == 0.0;
+  comparison.probability = OddsOf({own, others}).probability.front();
   return comparison;
 }
 
 std::optional<TurningPrice> TurningPriceOf(const std::vector<Evidence>& alternatives,
                                            const Criteria& criteria, int best) {
+  std::map<FailureCode, int> request;
+  int failures = 0;
+  for (const Evidence& evidence : alternatives) {
+    for (const auto& [code, count] : CountsOf(evidence)) {
+      request[code] += count;
+      failures += count;
+    }
+  }
+  // Expected cost is linear in each price: this many seconds for each.
+  const auto slope = [&](const Evidence& evidence, FailureCode code) {
+    const CostPosterior& posterior = evidence.cost->posterior;
+    return posterior.FailureProbability() *
+           (CountsOf(evidence)[code] + 1.0 * request[code] / failures) / (posterior.failures + 1.0);
+  };
   const Evidence& winner = alternatives[best];
   std::optional<TurningPrice> nearest;
   double nearest_distance = 0.0;
   for (std::size_t i = 0; i < alternatives.size(); ++i) {
     const Evidence& other = alternatives[i];
     if (static_cast<int>(i) == best || !IsGoodEnough(other, criteria)) continue;
-    std::map<FailureCode, int> more = CountsOf(other);  // than the winner has
-    for (const auto& [code, count] : CountsOf(winner)) more[code] -= count;
-    for (const auto& [code, count] : more) {
-      if (count == 0) continue;
+    for (const auto& [code, count] : request) {
+      const double steeper = slope(winner, code) - slope(other, code);
+      if (steeper == 0.0) continue;
       const double present = PriceOf(code, criteria.prices);
-      const double price =
-          present - (other.cost->mean - winner.cost->mean) * winner.num_rollouts / count;
+      const double price = present + (other.cost->mean - winner.cost->mean) / steeper;
       if (price < 0.0 || price > kHighestPrice) continue;
       const double distance = Distance(price, present);
       if (nearest && distance >= nearest_distance) continue;
-      nearest = TurningPrice{code, price, count > 0, static_cast<int>(i)};
+      nearest = TurningPrice{code, price, steeper < 0.0, static_cast<int>(i)};
       nearest_distance = distance;
     }
   }
   return nearest;
 }
 
-std::optional<CostReasons> CostReasonsOf(
-    const std::vector<const std::vector<RolloutResult>*>& results,
-    const std::vector<Evidence>& alternatives, const Criteria& criteria) {
+std::optional<CostReasons> CostReasonsOf(const std::vector<Evidence>& alternatives,
+                                         const Criteria& criteria) {
   if (criteria.rule != RankingRule::kCost) return std::nullopt;
   const std::optional<int> best = Recommended(alternatives, criteria);
   if (!best) return std::nullopt;
   CostReasons reasons;
+  const CostOdds odds = CostOddsOf(alternatives, criteria, *best);
+  reasons.probability = odds.probability;
+  reasons.regret = odds.regret;
+  if (reasons.IsClose()) reasons.until_settled = RolloutsToSettle(alternatives, criteria);
   for (const Evidence& evidence : alternatives) {
     if (!IsGoodEnough(evidence, criteria)) continue;
     for (const auto& [code, count] : CountsOf(evidence)) {
@@ -155,12 +113,12 @@ std::optional<CostReasons> CostReasonsOf(
   if (alternatives.size() < 2) return reasons;
   const int next = Rank(alternatives, criteria)[1];
   if (IsGoodEnough(alternatives[next], criteria)) {
-    reasons.next = CompareCosts(*results[*best], *results[next], alternatives[*best].num_rollouts,
-                                criteria.prices);
+    reasons.next = CompareCosts(alternatives[*best], alternatives[next]);
     reasons.next->other = next;
-    // Where nothing failed it is a fall that may have stayed unseen.
     if (reasons.prices.empty()) {
-      reasons.prices[FailureCode::kObjectFell] = PriceOf(FailureCode::kObjectFell, criteria.prices);
+      const double assumed = alternatives[next].cost->posterior.penalty;
+      const double fall = PriceOf(FailureCode::kObjectFell, criteria.prices);
+      reasons.prices[assumed == fall ? FailureCode::kObjectFell : FailureCode::kOther] = assumed;
     }
   }
   reasons.turning = TurningPriceOf(alternatives, criteria, *best);

@@ -152,12 +152,26 @@ Evidence SumUp(const std::vector<RolloutResult>& results) {
 
 Evidence SumUp(const std::vector<RolloutResult>& results, int num_rollouts, IntervalKind kind,
                const Prices& prices) {
-  HIRES_CHECK(num_rollouts >= 0 && num_rollouts <= static_cast<int>(results.size()),
-              "there are not that many rollouts to sum up");
-  Tally tally;
-  for (int index = 0; index < num_rollouts; ++index) tally.Add(results[index], index);
-  Evidence evidence = tally.Finish(kind);
-  evidence.cost = EstimateCost(results, num_rollouts, prices);
+  return SumUpRequest({{&results, num_rollouts}}, kind, prices).front();
+}
+
+std::vector<Evidence> SumUpRequest(const std::vector<RolloutPrefix>& request, IntervalKind kind,
+                                   const Prices& prices) {
+  for (const RolloutPrefix& of_one : request) {
+    HIRES_CHECK(
+        of_one.num_rollouts >= 0 && of_one.num_rollouts <= static_cast<int>(of_one.results->size()),
+        "there are not that many rollouts to sum up");
+  }
+  const double pseudo_penalty = prices.empty() ? 0.0 : PseudoPenalty(request, prices);
+  std::vector<Evidence> evidence;
+  for (const RolloutPrefix& of_one : request) {
+    Tally tally;
+    for (int i = 0; i < of_one.num_rollouts; ++i) {
+      tally.Add((*of_one.results)[static_cast<std::size_t>(i)], i);
+    }
+    evidence.push_back(tally.Finish(kind));
+    evidence.back().cost = EstimateCost(of_one, prices, pseudo_penalty, kind);
+  }
   return evidence;
 }
 

@@ -3,11 +3,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "hires/base/check.h"
 #include "hires/base/log.h"
 #include "hires/base/text.h"
-#include "hires/imagination/success_interval.h"
 #include "imagination/answer/confidence_sequence.h"
 
 namespace hires::imagination {
@@ -28,6 +28,27 @@ base::FailureCode CodeAt(const base::ParamReader& in, const std::string& word) {
     in.Fail(word, "no imagined rollout ends with this code; take the line out");
   }
   return *code;
+}
+
+/// Of the error probability of a cost interval; the rest is for the mean duration, which is known
+/// better.
+constexpr double kFailureAlpha = 0.8 * kAlpha;
+/// Up to so many failures the interval of their probability is narrower than a MeanSequence.
+constexpr int kFewFailures = 3;
+
+/// Half width of the asymptotic confidence sequence of a mean, narrowest at 32 values.
+double HalfWidth(double deviation, double count) {
+  const double alpha = kAlpha - kFailureAlpha;
+  const double rho2 = (-2.0 * std::log(alpha) + std::log(1.0 - 2.0 * std::log(alpha))) / 32.0;
+  const double wide = count * rho2 + 1.0;
+  return deviation *
+         std::sqrt(2.0 * wide / (count * count * rho2) * std::log(std::sqrt(wide) / alpha));
+}
+
+/// [s] of a failure that was not seen: dropping the payload, or `other` without one.
+double UnseenPenalty(bool carries_payload, const Prices& prices) {
+  return PriceOf(carries_payload ? base::FailureCode::kObjectFell : base::FailureCode::kOther,
+                 prices);
 }
 
 }  // namespace
@@ -92,22 +113,66 @@ double CostOf(const RolloutResult& result, const Prices& prices) {
   return CostOfTime(result.duration, prices) + PriceOf(FailureOf(result).code, prices);
 }
 
-std::optional<ExpectedCost> EstimateCost(const std::vector<RolloutResult>& results,
-                                         int num_rollouts, const Prices& prices) {
-  HIRES_CHECK(num_rollouts >= 0 && num_rollouts <= static_cast<int>(results.size()),
-              "there are not that many rollouts to sum up");
-  if (prices.empty() || num_rollouts == 0) return std::nullopt;
-  MeanSequence sequence(0.0, prices.Highest(), kAlpha);
+double PseudoPenalty(const std::vector<RolloutPrefix>& request, const Prices& prices) {
   double sum = 0.0;
-  for (int i = 0; i < num_rollouts; ++i) {
-    const double cost = CostOf(results[i], prices);
-    sequence.Add(cost);
-    sum += cost;
+  int failures = 0;
+  bool carries_payload = false;
+  for (const RolloutPrefix& of_one : request) {
+    for (int i = 0; i < of_one.num_rollouts; ++i) {
+      const RolloutResult& result = (*of_one.results)[static_cast<std::size_t>(i)];
+      const base::FailureCode code = FailureOf(result).code;
+      carries_payload = carries_payload || !result.nothing_watched;
+      failures += code != base::FailureCode::kNone;
+      sum += PriceOf(code, prices);
+    }
   }
-  const double mean = sum / num_rollouts;
+  return failures > 0 ? sum / failures : UnseenPenalty(carries_payload, prices);
+}
+
+std::optional<ExpectedCost> EstimateCost(const RolloutPrefix& rollouts, const Prices& prices,
+                                         double pseudo_penalty, IntervalKind kind) {
+  const int n = rollouts.num_rollouts;
+  if (prices.empty() || n == 0) return std::nullopt;
+  double sum = 0.0, square_sum = 0.0, shortest = prices.Highest(), penalties = pseudo_penalty;
+  double dearest = 0.0;
+  int failures = 0, num_dearest = 0;
+  bool carries_payload = false;
+  MeanSequence sequence(0.0, prices.Highest(), kAlpha);
+  for (int i = 0; i < n; ++i) {
+    const RolloutResult& result = (*rollouts.results)[static_cast<std::size_t>(i)];
+    const double duration = CostOfTime(result.duration, prices);
+    sum += duration;
+    square_sum += duration * duration;
+    shortest = std::min(shortest, duration);
+    carries_payload = carries_payload || !result.nothing_watched;
+    sequence.Add(CostOf(result, prices));
+    const base::FailureCode code = FailureOf(result).code;
+    if (code == base::FailureCode::kNone) continue;
+    const double penalty = PriceOf(code, prices);
+    ++failures;
+    penalties += penalty;
+    num_dearest = penalty > dearest ? 1 : num_dearest + (penalty == dearest);
+    dearest = std::max(dearest, penalty);
+  }
+  const double mean = sum / n;
+  // Nothing is known of the deviation of one value: the value itself stands for it.
+  const double deviation =
+      n == 1 ? mean : std::sqrt(std::max(0.0, square_sum - sum * mean) / (n - 1));
+  const CostPosterior posterior{mean, deviation / std::sqrt(n), penalties / (failures + 1),
+                                1.0 * failures, 1.0 * n};
+  const double cost = posterior.Mean(), unseen = UnseenPenalty(carries_payload, prices);
+  const bool cost_alike = num_dearest == failures && (failures == 0 || dearest >= unseen);
+  if (cost_alike && failures <= kFewFailures) {
+    const double penalty = std::max(dearest, unseen), half = HalfWidth(deviation, n);
+    const auto success = EstimateSuccess(n - failures, n, kind, kFailureAlpha);
+    const double lower = std::max(mean - half, shortest) + (1.0 - success.upper) * penalty;
+    const double upper = std::min(mean + half, CostOfTime(prices.time_limit, prices)) +
+                         (1.0 - success.lower) * penalty;
+    return ExpectedCost{cost, std::min(cost, lower), std::max(cost, upper), posterior};
+  }
   const Interval bounds = sequence.Bounds();
-  // Rounding, and sequences that contradict every mean, must not put the mean outside.
-  return ExpectedCost{mean, std::min(mean, bounds.lower), std::max(mean, bounds.upper)};
+  return ExpectedCost{cost, std::min(cost, std::max(shortest, bounds.lower)),
+                      std::max(cost, bounds.upper), posterior};
 }
 
 }  // namespace hires::imagination

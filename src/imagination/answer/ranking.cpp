@@ -22,7 +22,8 @@ double CostKey(const Evidence& evidence) {
   return evidence.cost ? evidence.cost->mean : 0.0;
 }
 
-void CheckPaired(const std::vector<Evidence>& alternatives) {
+void CheckPaired(const std::vector<Evidence>& alternatives, RankingRule rule) {
+  if (rule == RankingRule::kCost) return;  // posteriors of their own
   for (const Evidence& evidence : alternatives) {
     HIRES_CHECK(evidence.num_rollouts == alternatives.front().num_rollouts,
                 "alternatives are compared at different numbers of rollouts");
@@ -32,6 +33,21 @@ void CheckPaired(const std::vector<Evidence>& alternatives) {
 Suitability SuitabilityOf(const Evidence& evidence, const Criteria& criteria) {
   if (criteria.rule != RankingRule::kThesis) return Judge(evidence.success, criteria.min_success);
   return IsOut(evidence) ? Suitability::kNotReached : Suitability::kReached;
+}
+
+/// A round of kCost: few enough to stop soon, enough for many workers.
+constexpr int kSmallestRound = 16;
+constexpr int kRoundsToDouble = 4;  // a round adds a quarter
+
+std::vector<CostPosterior> PosteriorsOf(const std::vector<Evidence>& alternatives,
+                                        const std::vector<int>& candidates) {
+  std::vector<CostPosterior> posteriors;
+  for (const int i : candidates) {
+    const Evidence& evidence = alternatives[static_cast<std::size_t>(i)];
+    HIRES_CHECK(evidence.cost, "ranked by cost, but nothing is priced");
+    posteriors.push_back(evidence.cost->posterior);
+  }
+  return posteriors;
 }
 
 }  // namespace
@@ -82,7 +98,7 @@ std::string ToString(RankingRule rule) {
 }
 
 std::vector<int> Rank(const std::vector<Evidence>& alternatives, const Criteria& criteria) {
-  CheckPaired(alternatives);
+  CheckPaired(alternatives, criteria.rule);
   std::vector<Key> keys;
   keys.reserve(alternatives.size());
   for (const Evidence& evidence : alternatives) keys.push_back(KeyOf(evidence, criteria));
@@ -103,11 +119,64 @@ std::optional<int> Recommended(const std::vector<Evidence>& alternatives,
 }
 
 bool AllFail(const std::vector<Evidence>& alternatives, const Criteria& criteria) {
-  CheckPaired(alternatives);
+  CheckPaired(alternatives, criteria.rule);
   if (alternatives.empty() || alternatives.front().num_rollouts == 0) return false;
   return std::all_of(alternatives.begin(), alternatives.end(), [&](const Evidence& evidence) {
     return SuitabilityOf(evidence, criteria) == Suitability::kNotReached;
   });
+}
+
+std::vector<int> Candidates(const std::vector<Evidence>& alternatives, const Criteria& criteria) {
+  std::vector<int> candidates;
+  for (std::size_t i = 0; i < alternatives.size(); ++i) {
+    const bool fails = SuitabilityOf(alternatives[i], criteria) == Suitability::kNotReached;
+    if (!fails) candidates.push_back(static_cast<int>(i));
+  }
+  return candidates;
+}
+
+CostOdds CostOddsOf(const std::vector<Evidence>& alternatives, const Criteria& criteria, int best) {
+  const std::vector<int> candidates = Candidates(alternatives, criteria);
+  const BestOdds odds = OddsOf(PosteriorsOf(alternatives, candidates));
+  const auto place = std::find(candidates.begin(), candidates.end(), best) - candidates.begin();
+  return {odds.probability.at(static_cast<std::size_t>(place)),
+          odds.regret[static_cast<std::size_t>(place)]};
+}
+
+std::optional<int> RolloutsToSettle(const std::vector<Evidence>& alternatives,
+                                    const Criteria& criteria) {
+  return RolloutsToSettle(PosteriorsOf(alternatives, Candidates(alternatives, criteria)),
+                          kSettledProbability, kMostRollouts);
+}
+
+std::vector<int> NextRound(const std::vector<Evidence>& alternatives, const Criteria& criteria,
+                           int most) {
+  std::vector<int> next(alternatives.size(), 0);
+  const std::optional<int> best = Recommended(alternatives, criteria);
+  if (AllFail(alternatives, criteria)) return next;
+  if (best && CostOddsOf(alternatives, criteria, *best).regret <= criteria.max_regret) return next;
+  const std::vector<int> candidates = Candidates(alternatives, criteria);
+  std::vector<int> room;
+  int played = 0;
+  for (const int i : candidates) {
+    const Evidence& evidence = alternatives[static_cast<std::size_t>(i)];
+    played += evidence.num_rollouts;
+    room.push_back(most - evidence.num_rollouts);
+  }
+  const int size = std::max(kSmallestRound, played / kRoundsToDouble);
+  std::vector<int> round;
+  if (best) {
+    const auto place = std::find(candidates.begin(), candidates.end(), *best) - candidates.begin();
+    round =
+        AllocateRound(PosteriorsOf(alternatives, candidates), static_cast<int>(place), size, room);
+  } else {
+    const int share = 1 + (size - 1) / static_cast<int>(candidates.size());
+    for (const int left : room) round.push_back(std::min(left, share));
+  }
+  for (std::size_t i = 0; i < candidates.size(); ++i) {
+    next[static_cast<std::size_t>(candidates[i])] = round[i];
+  }
+  return next;
 }
 
 std::optional<int> RolloutsToDecide(const std::vector<Evidence>& alternatives,

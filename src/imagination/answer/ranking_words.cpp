@@ -134,7 +134,7 @@ std::string Common(const Evidence& best, const std::string& next_name, RankingRu
     case RankingRule::kRisk:
       return fmt::format("{} as with {}", SuccessText(best), next_name);
     case RankingRule::kCost:
-      return SuccessText(best) + ", good enough like " + next_name;
+      return SuccessText(best) + ", meets the required success rate, as does " + next_name;
     case RankingRule::kThesis:
       break;
   }
@@ -165,35 +165,11 @@ std::string WhyLater(const Evidence& best, const Evidence& next, const Key& best
   return ", and in nothing worse; it was named first";
 }
 
-/// Rounded down, so that it never promises too much.
-std::string Sureness(const CostComparison& with) {
-  return fmt::format("with probability {:.2f}", std::floor(100.0 * with.probability) / 100.0);
-}
-
-/// The quicker one of two whose failures do not speak against it.
-std::string WhyQuicker(const Evidence& best, const Evidence& next, const CostReasons& reasons) {
-  const CostComparison& with = *reasons.next;
-  if (!with.neither_failed) {
-    return fmt::format(
-        ", and quicker by {:.1f} s, which is more than its failures may cost beyond those of the "
-        "other (at most {:.1f} s), so the quicker one is taken",
-        with.time_saved, std::max(0.0, with.failures_more_upper));
-  }
-  const std::string taken = "; neither failed, so the quicker one is taken, " +
-                            Against(best.cost->mean, next.cost->mean, " s", 1);
-  if (reasons.is_one_truth) return taken + "; all rollouts are of one and the same truth";
-  return taken + fmt::format("; it costs less {}, as a failure may have stayed unseen in {} {}",
-                             Sureness(with), best.num_rollouts, Rollouts(best.num_rollouts));
-}
-
 std::string WhyCheaper(const Evidence& best, const Evidence& next, const Key& best_key,
-                       const Key& next_key, const CostReasons* reasons) {
-  const bool is_compared = reasons != nullptr && reasons->next.has_value();
+                       const Key& next_key) {
   if (std::get<1>(best_key) != std::get<1>(next_key)) {
-    if (is_compared && reasons->next->IsAlike()) return WhyQuicker(best, next, *reasons);
     return ", and its expected cost is lower, " +
-           Against(best.cost->mean, next.cost->mean, " s", 1) +
-           (is_compared && !reasons->is_one_truth ? ", " + Sureness(*reasons->next) : "");
+           Against(best.cost->mean, next.cost->mean, " s", 1);
   }
   if (std::get<2>(best_key) != std::get<2>(next_key)) {
     return fmt::format(
@@ -204,15 +180,15 @@ std::string WhyCheaper(const Evidence& best, const Evidence& next, const Key& be
 }
 
 std::string WhyBetter(const Evidence& best, const Evidence& next, const std::string& next_name,
-                      const Criteria& criteria, const CostReasons* reasons) {
+                      const Criteria& criteria) {
   const Key best_key = KeyOf(best, criteria);
   const Key next_key = KeyOf(next, criteria);
   if (std::get<0>(best_key) != std::get<0>(next_key)) {
     return WhyFirst(best, next, next_name, criteria.rule);
   }
-  return Common(best, next_name, criteria.rule) +
-         (criteria.rule == RankingRule::kCost ? WhyCheaper(best, next, best_key, next_key, reasons)
-                                              : WhyLater(best, next, best_key, next_key));
+  return Common(best, next_name, criteria.rule) + (criteria.rule == RankingRule::kCost
+                                                       ? WhyCheaper(best, next, best_key, next_key)
+                                                       : WhyLater(best, next, best_key, next_key));
 }
 
 constexpr double kNoticeable = 0.1;  // [s]
@@ -263,6 +239,22 @@ std::string WhoIsNotGoodEnough(const std::vector<Evidence>& alternatives, const 
       std::floor(100.0 * cheapest->success.lower), Percent(criteria.min_success));
 }
 
+/// How certain it is that the recommended one is the cheapest.
+std::string Odds(const CostReasons* reasons) {
+  if (!reasons) return "";
+  std::string text;
+  if (reasons->IsClose()) {
+    text = "; near tie: " +
+           (reasons->until_settled
+                ? fmt::format("about {} rollouts of each would settle it", *reasons->until_settled)
+                : fmt::format("not even {} rollouts of each would settle it", kMostRollouts));
+  }
+  // Rounded down, so that it never promises too much.
+  text += fmt::format("; P(best) {:.2f}, expected regret {:.1f} s",
+                      std::floor(100.0 * reasons->probability) / 100.0, reasons->regret);
+  return reasons->is_one_truth ? text + "; all rollouts share one ground truth" : text;
+}
+
 /// What the failures that were weighed cost, and where the answer would turn.
 std::string WhatPricesSay(const CostReasons* reasons, const std::vector<std::string>& names) {
   if (!reasons) return "";
@@ -284,8 +276,8 @@ std::string WhyRecommended(const std::vector<Evidence>& alternatives, const Crit
   }
   const int next = Rank(alternatives, criteria)[1];
   return fmt::format("{}: {}{}", names[*best],
-                     WhyBetter(winner, alternatives[next], names[next], criteria, reasons),
-                     WhatSpeaksAgainst(alternatives, winner, criteria, names) +
+                     WhyBetter(winner, alternatives[next], names[next], criteria),
+                     Odds(reasons) + WhatSpeaksAgainst(alternatives, winner, criteria, names) +
                          WhoIsNotGoodEnough(alternatives, winner, criteria, names) +
                          WhatPricesSay(reasons, names));
 }

@@ -26,15 +26,6 @@ std::string WhyNothing(const Scheduler& scheduler, ImaginationOutcome outcome) {
   }
 }
 
-std::vector<const std::vector<RolloutResult>*> PrefixesOf(const Scheduler& scheduler,
-                                                          std::size_t num_alternatives) {
-  std::vector<const std::vector<RolloutResult>*> prefixes;
-  for (std::size_t i = 0; i < num_alternatives; ++i) {
-    prefixes.push_back(&scheduler.Prefix(static_cast<int>(i)));
-  }
-  return prefixes;
-}
-
 /// From indices of alternatives to places of the order.
 void CallByPlace(const std::vector<int>& order, CostReasons* reasons) {
   const auto place = [&](int alternative) {
@@ -106,10 +97,11 @@ Report MakeReport(const Scheduler& scheduler, const std::vector<base::ActionCall
   report.ranking = PredictionsOf(scheduler, ranking, actions, true);
   for (std::size_t alternative = 0; alternative < actions.size(); ++alternative) {
     const auto& prefix = scheduler.Prefix(static_cast<int>(alternative));
-    for (int i = 0; i < ranking.num_rollouts; ++i) report.simulated_seconds += prefix[i].simulated;
+    const int count = ranking.num_rollouts > 0 ? ranking.evidence[alternative].num_rollouts : 0;
+    for (int i = 0; i < count; ++i) report.simulated_seconds += prefix[i].simulated;
   }
   for (const auto& [alternative, index] : kept) {
-    if (index >= ranking.num_rollouts) continue;
+    if (ranking.num_rollouts == 0 || index >= ranking.evidence[alternative].num_rollouts) continue;
     ++report.kept.rollouts;
     report.kept.simulated_seconds += scheduler.Prefix(alternative)[index].simulated;
   }
@@ -127,10 +119,11 @@ Report MakeReport(const Scheduler& scheduler, const std::vector<base::ActionCall
     return report;
   }
   const Criteria& criteria = scheduler.params().criteria;
-  report.by_cost = CostReasonsOf(PrefixesOf(scheduler, actions.size()), ranking.evidence, criteria);
+  report.by_cost = CostReasonsOf(ranking.evidence, criteria);
   if (report.by_cost) report.by_cost->is_one_truth = is_one_truth;
   report.why = WhyRecommended(ranking.evidence, criteria, NamesOf(actions),
                               report.by_cost ? &*report.by_cost : nullptr);
+  if (!report.complete) report.why += "; stopped by " + result.stopped_by;
   if (report.by_cost) CallByPlace(ranking.order, &*report.by_cost);
   return report;
 }

@@ -19,6 +19,7 @@ constexpr int kLargestBatch = 1000;
 constexpr int kMostAttempts = 100;
 constexpr double kLongestWait = 1e7;     // [s]
 constexpr double kSmallestShare = 1e-6;  // of alpha and indifference
+constexpr int kRoundsOfOne = 4;  // first_look so many times, where there is only one alternative
 /// A worker that fails so often without one finished rollout in between is the problem itself. Less
 /// than the usual max_attempts, so that one broken worker alone condemns no rollout.
 constexpr int kFailuresInARow = 2;
@@ -28,6 +29,17 @@ void CheckField(const char* name, T value, T lower, T upper) {
   if (value >= lower && value <= upper) return;  // false for NaN
   throw base::ConfigError(
       fmt::format("scheduler: {} is {}, wanted between {} and {}", name, value, lower, upper));
+}
+
+/// For one version: keys that every file had, and that now only the other rankings read.
+void WarnOfUnusedKeys(const base::ParamReader& in) {
+  for (const char* key : {"alpha", "indifference", "only_best"}) {
+    if (!in.Has(key)) continue;
+    base::Log(base::LogLevel::kWarn,
+              fmt::format("scheduler: {} does not affect `ranking: cost`, which stops by "
+                          "max_regret; remove it, unless requests rank by risk or thesis",
+                          key));
+  }
 }
 
 RolloutResult Unplayable() {
@@ -53,6 +65,7 @@ void CheckParams(const SchedulerParams& params) {
         "(ReadPrices; ReadClientConfig does), or rank by risk");
   }
   CheckField("min_success", params.criteria.min_success, kLeastSuccess, kMostSuccess);
+  CheckField("max_regret", params.criteria.max_regret, 0.0, kHighestPrice);
   CheckField("alpha", params.settle.alpha, kSmallestShare, 1.0 - kSmallestShare);
   CheckField("indifference", params.settle.indifference, kSmallestShare, 1.0 - kSmallestShare);
 }
@@ -70,9 +83,13 @@ SchedulerParams ReadSchedulerParams(base::ParamReader in) {
   params.first_look = in.Get("first_look", base::Between(1, kMostRollouts));
   params.batch = in.Get("batch", base::Between(1, kLargestBatch));
   params.max_attempts = in.Get("max_attempts", base::Between(1, kMostAttempts));
-  params.settle.alpha = in.Get("alpha", share);
-  params.settle.indifference = in.Get("indifference", share);
-  params.settle.only_best = in.GetBool("only_best");
+  if (in.Has("max_regret")) {
+    params.criteria.max_regret = in.Get("max_regret", base::Between(0.0, kHighestPrice));
+  }
+  if (params.criteria.rule == RankingRule::kCost) WarnOfUnusedKeys(in);
+  if (in.Has("alpha")) params.settle.alpha = in.Get("alpha", share);
+  if (in.Has("indifference")) params.settle.indifference = in.Get("indifference", share);
+  if (in.Has("only_best")) params.settle.only_best = in.GetBool("only_best");
   in.RejectUnknownKeys();
   return params;
 }
@@ -81,6 +98,8 @@ std::string ToString(ImaginationOutcome outcome) {
   switch (outcome) {
     case ImaginationOutcome::kRanked:
       return "ranked";
+    case ImaginationOutcome::kClose:
+      return "close";
     case ImaginationOutcome::kAllFailed:
       return "all_failed";
     case ImaginationOutcome::kUndecided:
@@ -160,6 +179,8 @@ Scheduler::Scheduler(const SchedulerParams& params, int num_alternatives, double
   HIRES_CHECK(num_alternatives <= std::numeric_limits<int>::max() / kMostRollouts,
               "there are more alternatives than can be counted");
   alternatives_.resize(num_alternatives);
+  begins_.assign(num_alternatives, 0);
+  ends_.assign(num_alternatives, FirstRound());
 }
 
 std::vector<Command> Scheduler::Handle(const Event& event, double now) {
@@ -176,17 +197,18 @@ std::vector<Command> Scheduler::Handle(const Event& event, double now) {
 std::vector<Command> Scheduler::Tick(double now) {
   if (finished()) return {};
   if (const auto deadline = DeadlineAt(); deadline && now >= *deadline) {
-    CutShort(HasUsableWorker() ? ImaginationOutcome::kNothingFinished
-                               : ImaginationOutcome::kNoWorker);
+    CutShort(
+        HasUsableWorker() ? ImaginationOutcome::kNothingFinished : ImaginationOutcome::kNoWorker,
+        "the deadline");
   } else if (without_workers_ && now >= *without_workers_ + params_.worker_wait) {
-    CutShort(ImaginationOutcome::kNoWorker);
+    CutShort(ImaginationOutcome::kNoWorker, "the loss of all workers");
   }
   return TakeCommands();
 }
 
 std::vector<Command> Scheduler::Cancel(double /*now*/) {
   if (!finished()) {
-    CutShort(ImaginationOutcome::kCancelled);
+    CutShort(ImaginationOutcome::kCancelled, "a cancellation");
     result_->outcome = ImaginationOutcome::kCancelled;
   }
   return TakeCommands();
@@ -324,76 +346,111 @@ void Scheduler::CheckRepeated(const RolloutFinished& event) {
 
 // ---------------------------------------------------------------- decisions
 
-int Scheduler::CommonPrefix() const {
-  std::size_t common = alternatives_.front().prefix.size();
-  for (const auto& alternative : alternatives_)
-    common = std::min(common, alternative.prefix.size());
-  return static_cast<int>(common);
+bool Scheduler::IsAdaptive() const {
+  return params_.early_stop && params_.criteria.rule == RankingRule::kCost;
+}
+
+/// Rollouts of each alternative that a ranking may rest on now.
+std::vector<int> Scheduler::Prefixes() const {
+  std::vector<int> counts;
+  for (const auto& alternative : alternatives_) {
+    counts.push_back(static_cast<int>(alternative.prefix.size()));
+  }
+  const int common = *std::min_element(counts.begin(), counts.end());
+  if (!IsAdaptive() || common == 0) counts.assign(counts.size(), common);
+  return counts;
+}
+
+int Scheduler::FirstRound() const {
+  if (!params_.early_stop) return params_.rollouts;
+  const int rounds = IsAdaptive() && alternatives_.size() == 1 ? kRoundsOfOne : 1;
+  return std::min(rounds * params_.first_look, params_.rollouts);
+}
+
+/// Where the round ends that follows on one with this ranking; where it ended: the answer is
+/// decided, or all is played.
+std::vector<int> Scheduler::AfterRound(const Ranking& ranking) const {
+  std::vector<int> ends = ends_;
+  if (IsAdaptive()) {
+    const std::vector<int> more = NextRound(ranking.evidence, params_.criteria, params_.rollouts);
+    for (std::size_t i = 0; i < ends.size(); ++i) ends[i] += more[i];
+    return ends;
+  }
+  if (params_.early_stop && alternatives_.size() > 1) {
+    std::vector<const std::vector<RolloutResult>*> prefixes;
+    for (const Alternative& alternative : alternatives_) prefixes.push_back(&alternative.prefix);
+    if (Decided(prefixes, ends_.front(), params_.criteria, params_.settle)) return ends;
+  }
+  ends.assign(ends.size(), NextLook(ends_.front(), params_));
+  return ends;
 }
 
 void Scheduler::Decide() {
-  const int common = CommonPrefix();
   while (!finished()) {
-    const int look = NextLook(decided_, params_);
-    if (look > common) return;
-    if (look == params_.rollouts || IsDecidedAt(look)) FinishWith(look, true);
-    decided_ = look;
+    for (std::size_t i = 0; i < ends_.size(); ++i) {
+      if (static_cast<int>(alternatives_[i].prefix.size()) < ends_[i]) return;
+    }
+    const Ranking ranking = RankFirst(ends_);
+    std::vector<int> next = AfterRound(ranking);
+    if (next == ends_) return Finish(OutcomeOf(ranking), true, ranking);
+    begins_ = std::exchange(ends_, std::move(next));
   }
 }
 
-bool Scheduler::IsDecidedAt(int look) const {
-  if (!params_.early_stop || alternatives_.size() < 2) return false;
-  std::vector<const std::vector<RolloutResult>*> prefixes;
-  prefixes.reserve(alternatives_.size());
-  for (const Alternative& alternative : alternatives_) prefixes.push_back(&alternative.prefix);
-  return Decided(prefixes, look, params_.criteria, params_.settle);
-}
-
-IntervalKind Scheduler::KindAt(int num_rollouts) const {
+IntervalKind Scheduler::KindAt(const std::vector<int>& counts) const {
   const bool is_fixed =
-      !params_.early_stop || alternatives_.size() < 2 || NextLook(0, params_) == params_.rollouts;
-  return is_fixed && num_rollouts == params_.rollouts ? IntervalKind::kClopperPearson
-                                                      : IntervalKind::kConfidenceSequence;
+      FirstRound() == params_.rollouts || (alternatives_.size() < 2 && !IsAdaptive());
+  const bool are_all = std::all_of(counts.begin(), counts.end(),
+                                   [&](int count) { return count == params_.rollouts; });
+  return is_fixed && are_all ? IntervalKind::kClopperPearson : IntervalKind::kConfidenceSequence;
 }
 
-Ranking Scheduler::RankFirst(int num_rollouts) const {
-  Ranking ranking;
-  ranking.num_rollouts = num_rollouts;
-  for (const Alternative& alternative : alternatives_) {
-    ranking.evidence.push_back(
-        SumUp(alternative.prefix, num_rollouts, KindAt(num_rollouts), params_.criteria.prices));
+Ranking Scheduler::RankFirst(const std::vector<int>& counts) const {
+  std::vector<RolloutPrefix> prefixes;
+  for (std::size_t i = 0; i < counts.size(); ++i) {
+    prefixes.push_back({&alternatives_[i].prefix, counts[i]});
   }
+  Ranking ranking;
+  ranking.num_rollouts = *std::min_element(counts.begin(), counts.end());
+  ranking.evidence = SumUpRequest(prefixes, KindAt(counts), params_.criteria.prices);
   ranking.order = Rank(ranking.evidence, params_.criteria);
   ranking.recommended = Recommended(ranking.evidence, params_.criteria);
   return ranking;
 }
 
 Ranking Scheduler::RankingSoFar() const {
-  return finished() ? result_->ranking : RankFirst(CommonPrefix());
+  return finished() ? result_->ranking : RankFirst(Prefixes());
 }
 
-void Scheduler::FinishWith(int num_rollouts, bool complete) {
-  const Ranking ranking = RankFirst(num_rollouts);
-  const bool all_fail = AllFail(ranking.evidence, params_.criteria);
-  Finish(ranking.recommended ? ImaginationOutcome::kRanked
-         : all_fail          ? ImaginationOutcome::kAllFailed
-                             : ImaginationOutcome::kUndecided,
-         complete, num_rollouts);
+/// @pre something was played.
+ImaginationOutcome Scheduler::OutcomeOf(const Ranking& ranking) const {
+  const Criteria& criteria = params_.criteria;
+  if (ranking.recommended) {
+    const bool is_close = criteria.rule == RankingRule::kCost &&
+                          CostOddsOf(ranking.evidence, criteria, *ranking.recommended).probability <
+                              kSettledProbability;
+    return is_close ? ImaginationOutcome::kClose : ImaginationOutcome::kRanked;
+  }
+  return AllFail(ranking.evidence, criteria) ? ImaginationOutcome::kAllFailed
+                                             : ImaginationOutcome::kUndecided;
 }
 
-void Scheduler::CutShort(ImaginationOutcome if_nothing) {
-  const int common = CommonPrefix();
-  if (common == 0) return Finish(if_nothing, false, 0);
-  FinishWith(common, false);
+void Scheduler::CutShort(ImaginationOutcome if_nothing, const std::string& by) {
+  Ranking ranking = RankFirst(Prefixes());
+  const auto outcome = ranking.num_rollouts == 0 ? if_nothing : OutcomeOf(ranking);
+  Finish(outcome, false, std::move(ranking), by);
 }
 
-void Scheduler::Finish(ImaginationOutcome outcome, bool complete, int num_rollouts) {
-  SchedulerResult result{outcome, outcome, complete, 0, RankFirst(num_rollouts)};
-  for (Alternative& alternative : alternatives_) {
+void Scheduler::Finish(ImaginationOutcome outcome, bool complete, Ranking ranking,
+                       const std::string& stopped_by) {
+  SchedulerResult result{outcome, outcome, complete, stopped_by, 0, std::move(ranking)};
+  for (std::size_t i = 0; i < alternatives_.size(); ++i) {
+    Alternative& alternative = alternatives_[i];
+    const int count = result.ranking.evidence[i].num_rollouts;
     const auto& unplayable = alternative.unplayable;
     result.num_unplayable +=
-        static_cast<int>(std::distance(unplayable.begin(), unplayable.lower_bound(num_rollouts)));
-    alternative.prefix.resize(num_rollouts);
+        static_cast<int>(std::distance(unplayable.begin(), unplayable.lower_bound(count)));
+    alternative.prefix.resize(static_cast<std::size_t>(count));
     alternative.ahead.clear();
   }
   for (const auto& [id, assignment] : assignments_) {
@@ -405,31 +462,40 @@ void Scheduler::Finish(ImaginationOutcome outcome, bool complete, int num_rollou
 
 // ---------------------------------------------------------------- work
 
-int Scheduler::EndOfWork() const {
-  if (!params_.early_stop) return params_.rollouts;
-  return NextLook(NextLook(decided_, params_), params_);
+/// How far workers go that have nothing to do in the present round.
+std::vector<int> Scheduler::EndsOfNextRound() const {
+  std::vector<int> ends;
+  for (std::size_t i = 0; i < ends_.size(); ++i) {
+    ends.push_back(IsAdaptive() ? std::min(2 * ends_[i] - begins_[i], params_.rollouts)
+                                : NextLook(ends_[i], params_));
+  }
+  return ends;
 }
 
 void Scheduler::AssignToAll(double now) {
+  const std::vector<int> next = EndsOfNextRound();
   for (const auto& [id, worker] : workers_) {
     if (!worker.is_usable || worker.assignment) continue;
-    if (!AssignTo(id)) return;
+    if (!AssignTo(id, ends_) && !AssignTo(id, next)) return;
     if (!work_began_) work_began_ = now;
   }
 }
 
-bool Scheduler::AssignTo(int worker) {
-  // min_element keeps the first of equals: by index, then by alternative.
-  const auto next = std::min_element(
-      alternatives_.begin(), alternatives_.end(),
-      [](const Alternative& a, const Alternative& b) { return a.FirstOpen() < b.FirstOpen(); });
-  const int first = next->FirstOpen();
-  if (first >= EndOfWork()) return false;
-  const int end = NextLook(first, params_);
-  const int most = BatchSize(first, end);
-  Assignment assignment{worker, static_cast<int>(next - alternatives_.begin()), first, 0, {}};
-  while (assignment.count < most && first + assignment.count < end &&
-         next->TakeOpen(first + assignment.count)) {
+bool Scheduler::AssignTo(int worker, const std::vector<int>& ends) {
+  // By index, then by alternative.
+  std::size_t next = ends.size();
+  for (std::size_t i = 0; i < ends.size(); ++i) {
+    const int open = alternatives_[i].FirstOpen();
+    if (open >= ends[i]) continue;
+    if (next == ends.size() || open < alternatives_[next].FirstOpen()) next = i;
+  }
+  if (next == ends.size()) return false;
+  Alternative& alternative = alternatives_[next];
+  const int first = alternative.FirstOpen();
+  const int most = BatchSize(first, ends);
+  Assignment assignment{worker, static_cast<int>(next), first, 0, {}};
+  while (assignment.count < most && first + assignment.count < ends[next] &&
+         alternative.TakeOpen(first + assignment.count)) {
     assignment.owed.insert(first + assignment.count++);
   }
   commands_.push_back(
@@ -439,11 +505,9 @@ bool Scheduler::AssignTo(int worker) {
   return true;
 }
 
-int Scheduler::BatchSize(int first_index, int end_of_look) const {
+int Scheduler::BatchSize(int first_index, const std::vector<int>& ends) const {
   int num_open = 0;
-  for (const Alternative& alternative : alternatives_) {
-    num_open += alternative.NumOpenBelow(end_of_look);
-  }
+  for (std::size_t i = 0; i < ends.size(); ++i) num_open += alternatives_[i].NumOpenBelow(ends[i]);
   const int from_the_start = 1 + first_index / 4;
   const int to_the_end = 1 + num_open / (2 * static_cast<int>(workers_.size()));
   return std::min({params_.batch, from_the_start, to_the_end});

@@ -37,15 +37,8 @@ class PairJudge {
         indifference_(indifference) {}
 
   bool IsSettled(Prefix a, Prefix b) const {
-    switch (criteria_.rule) {
-      case RankingRule::kRisk:
-        return SettledBy({SuccessDifference, ConfidenceDifference, QuickerSign}, a, b);
-      case RankingRule::kCost:
-        return CostSettled(a, b);
-      case RankingRule::kThesis:
-        break;
-    }
-    return ThesisSettled(a, b);
+    if (criteria_.rule == RankingRule::kThesis) return ThesisSettled(a, b);
+    return SettledBy({SuccessDifference, ConfidenceDifference, QuickerSign}, a, b);
   }
 
  private:
@@ -75,32 +68,6 @@ class PairJudge {
     return true;
   }
 
-  Suitability SuitabilityOf(Prefix results) const {
-    int num_success = 0;
-    for (int i = 0; i < num_rollouts_; ++i) num_success += FailureOf(results[i]) ? 0 : 1;
-    return Judge(
-        EstimateSuccess(num_success, num_rollouts_, IntervalKind::kConfidenceSequence, alpha_),
-        criteria_.min_success);
-  }
-
-  /// Whether a is certainly cheaper.
-  bool IsCheaper(Prefix a, Prefix b) const {
-    const double highest = criteria_.prices.Highest();
-    MeanSequence surplus(-highest, highest, alpha_);
-    for (int i = 0; i < num_rollouts_; ++i) {
-      surplus.Add(CostOf(b[i], criteria_.prices) - CostOf(a[i], criteria_.prices));
-    }
-    return surplus.Above(0.0);
-  }
-
-  bool CostSettled(Prefix a, Prefix b) const {
-    const Suitability first = SuitabilityOf(a);
-    const Suitability second = SuitabilityOf(b);
-    if (first == Suitability::kNotReached) return second == Suitability::kNotReached;
-    if (first == Suitability::kOpen) return false;
-    return second == Suitability::kNotReached || IsCheaper(a, b);
-  }
-
   bool ThesisSettled(Prefix a, Prefix b) const {
     const Verdict first = InOrOut(a);
     const Verdict second = InOrOut(b);
@@ -119,31 +86,22 @@ class PairJudge {
 double NumSequences(std::size_t num_alternatives, RankingRule rule) {
   const double n = static_cast<double>(num_alternatives);
   const double pairs = n * (n - 1.0) / 2.0;
-  switch (rule) {
-    case RankingRule::kRisk:
-      return 3.0 * pairs;
-    case RankingRule::kCost:
-      return pairs + n;
-    case RankingRule::kThesis:
-      break;
-  }
-  return 2.0 * pairs + n;
+  return rule == RankingRule::kThesis ? 2.0 * pairs + n : 3.0 * pairs;
 }
 
 using Prefixes = std::vector<const std::vector<RolloutResult>*>;
 
-std::vector<Evidence> SumUpAll(const Prefixes& results, int num_rollouts,
-                               const Criteria& criteria) {
+std::vector<Evidence> SumUpAll(const Prefixes& results, int num_rollouts) {
   std::vector<Evidence> evidence;
   evidence.reserve(results.size());
   for (const auto* of_one : results) {
-    evidence.push_back(SumUp(*of_one, num_rollouts, IntervalKind::kConfidenceSequence,
-                             criteria.rule == RankingRule::kCost ? criteria.prices : Prices{}));
+    evidence.push_back(SumUp(*of_one, num_rollouts, IntervalKind::kConfidenceSequence));
   }
   return evidence;
 }
 
-void CheckSettleParams(int num_rollouts, const SettleParams& params) {
+void CheckSettleParams(int num_rollouts, RankingRule rule, const SettleParams& params) {
+  HIRES_CHECK(rule != RankingRule::kCost, "by cost the expected regret decides (NextRound)");
   HIRES_CHECK(num_rollouts >= 1, "nothing can be settled without a rollout");
   HIRES_CHECK(params.alpha > 0.0 && params.alpha < 1.0, "alpha lies outside (0, 1)");
   HIRES_CHECK(params.indifference > 0.0 && params.indifference < 1.0,
@@ -175,16 +133,16 @@ bool Settled(const std::vector<std::vector<RolloutResult>>& results, int num_rol
 
 bool Settled(const Prefixes& results, int num_rollouts, const Criteria& criteria,
              const SettleParams& params) {
-  CheckSettleParams(num_rollouts, params);
+  CheckSettleParams(num_rollouts, criteria.rule, params);
   if (results.size() < 2) return true;
-  const std::vector<int> order = Rank(SumUpAll(results, num_rollouts, criteria), criteria);
+  const std::vector<int> order = Rank(SumUpAll(results, num_rollouts), criteria);
   return IsOrderSettled(results, order, num_rollouts, criteria, params);
 }
 
 bool Decided(const Prefixes& results, int num_rollouts, const Criteria& criteria,
              const SettleParams& params) {
-  CheckSettleParams(num_rollouts, params);
-  const std::vector<Evidence> evidence = SumUpAll(results, num_rollouts, criteria);
+  CheckSettleParams(num_rollouts, criteria.rule, params);
+  const std::vector<Evidence> evidence = SumUpAll(results, num_rollouts);
   if (criteria.rule != RankingRule::kThesis) {
     if (AllFail(evidence, criteria)) return true;
     if (!Recommended(evidence, criteria)) return false;

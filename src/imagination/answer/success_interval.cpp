@@ -7,6 +7,7 @@
 
 #include "hires/base/check.h"
 #include "imagination/answer/confidence_sequence.h"
+#include "imagination/answer/fewest_rollouts.h"
 
 namespace hires::imagination {
 namespace {
@@ -98,18 +99,9 @@ Suitability Judge(const SuccessInterval& success, double min_success) {
 std::optional<int> RolloutsToDecide(const SuccessInterval& success, double min_success, int most) {
   HIRES_CHECK(success.num_rollouts >= 1, "wanted at least one rollout to estimate from");
   HIRES_CHECK(min_success > 0.0 && min_success < 1.0, "min_success lies outside (0, 1)");
-  int too_few = success.num_rollouts;
-  int enough = too_few;
-  do {
-    if (enough >= most) return std::nullopt;
-    too_few = enough;
-    enough = std::min(2 * enough, most);
-  } while (!Decides(success.share, enough, success.kind, min_success));
-  while (enough - too_few > 1) {
-    const int middle = too_few + (enough - too_few) / 2;
-    (Decides(success.share, middle, success.kind, min_success) ? enough : too_few) = middle;
-  }
-  return enough;
+  return FewestRollouts(success.num_rollouts, most, [&](int rollouts) {
+    return Decides(success.share, rollouts, success.kind, min_success);
+  });
 }
 
 }  // namespace hires::imagination

@@ -15,6 +15,7 @@ Told OutcomeOf(const Report& report, bool is_late) {
   const bool is_cancelled = report.outcome == ImaginationOutcome::kCancelled;
   switch (is_cancelled && is_late ? report.found : report.outcome) {
     case ImaginationOutcome::kRanked:
+    case ImaginationOutcome::kClose:
       return Told::kRanked;
     case ImaginationOutcome::kAllFailed:
       return Told::kAllFailed;
@@ -62,6 +63,7 @@ ImagineAnswered AnswerOf(int request, const Report& report, bool is_late,
   answer.request = request;
   answer.outcome = OutcomeOf(report, is_late);
   answer.why = report.why;
+  if (is_late && !report.complete && !report.ranking.empty()) answer.why += " at its deadline";
   std::set<std::string> instances;
   for (const std::string& thing : things) instances.insert(base::ToLower(thing));
   answer.depends_on.assign(instances.begin(), instances.end());

@@ -3,10 +3,13 @@
 #include <fmt/format.h>
 #include <hires/ImagineActionGoal.h>
 #include <hires/ImagineActionResult.h>
+#include <ros/serialization.h>
 #include <rosbag/view.h>
 
+#include <boost/make_shared.hpp>
 #include <map>
 #include <set>
+#include <type_traits>
 #include <utility>
 
 #include "hires/base/error.h"
@@ -67,6 +70,29 @@ std::set<std::string> ChooseActions(const std::string& path, const std::vector<B
                   ListOfTopics(topics)));
 }
 
+/// Messages of HIRES 0.3.0 are a beginning of today's: fields were added at the end alone.
+template <typename Message>
+const char* FormerMd5() {
+  return std::is_same_v<Message, ImagineActionGoal> ? "da7f143324b1dacb436c8755d3330410"
+                                                    : "a92a9edf5b63fc454bc681bbf88ec706";
+}
+
+/// @return nullptr: of another type or version. Fields that 0.3.0 did not have are 0.
+template <typename Message>
+boost::shared_ptr<Message> ReadAs(const rosbag::MessageInstance& message) {
+  constexpr std::size_t kMostMissing = 32;
+  const bool is_former = message.getMD5Sum() == FormerMd5<Message>() &&
+                         message.getDataType() == ros::message_traits::datatype<Message>();
+  if (!is_former) return message.instantiate<Message>();
+  std::vector<std::uint8_t> bytes(message.size() + kMostMissing, 0);
+  ros::serialization::OStream out(bytes.data(), message.size());
+  message.write(out);
+  const auto former = boost::make_shared<Message>();
+  ros::serialization::IStream in(bytes.data(), static_cast<std::uint32_t>(bytes.size()));
+  ros::serialization::deserialize(in, *former);
+  return former;
+}
+
 template <typename Message>
 void RequireVersion(const std::string& path, const std::vector<BagTopic>& topics,
                     const std::string& name) {
@@ -74,7 +100,8 @@ void RequireVersion(const std::string& path, const std::vector<BagTopic>& topics
     if (topic.name != name) continue;
     const std::string type = ros::message_traits::datatype<Message>();
     const std::string md5sum = ros::message_traits::md5sum<Message>();
-    if (topic.type == type && topic.md5sum == md5sum) continue;
+    const bool is_known = topic.md5sum == md5sum || topic.md5sum == FormerMd5<Message>();
+    if (topic.type == type && is_known) continue;
     throw ConfigError(fmt::format(
         "{}: topic {} has messages of type {} with md5sum {}, but this build reads {} with md5sum "
         "{}; replay it with the version of HIRES that recorded it (`rosbag check {}` shows how the "
@@ -102,14 +129,14 @@ RecordedAction ReadAction(const rosbag::Bag& bag, const std::string& action) {
   std::set<std::string> seen;
   rosbag::View view(bag, rosbag::TopicQuery({action + "/goal", action + "/result"}));
   for (const rosbag::MessageInstance& message : view) {
-    if (const auto goal = message.instantiate<ImagineActionGoal>()) {
+    if (const auto goal = ReadAs<ImagineActionGoal>(message)) {
       if (goal->goal_id.id.empty()) {
         ++out.goals_without_id;
         continue;
       }
       // An action server ignores a goal that comes once more, so it counts once here too.
       if (seen.insert(goal->goal_id.id).second) out.goals.push_back({goal->goal_id.id, goal->goal});
-    } else if (const auto result = message.instantiate<ImagineActionResult>()) {
+    } else if (const auto result = ReadAs<ImagineActionResult>(message)) {
       hires::ImagineResult& kept = result->result;
       const bool is_cancelled = result->status.status == actionlib_msgs::GoalStatus::PREEMPTED;
       if (is_cancelled) kept.outcome = hires::ImagineResult::CANCELLED;  // whatever was found

@@ -5,6 +5,7 @@
 #include <hires/ImagineAction.h>
 #include <ros/ros.h>
 
+#include <algorithm>
 #include <optional>
 
 #include "hires/base/error.h"
@@ -58,6 +59,7 @@ hires::ImagineGoal GoalOf(const hires::cli::ImagineQuery& query) {
   goal.seed = query.seed;
   goal.ranking = hires::imagination::ToString(query.scheduler.criteria.rule);
   goal.min_success = query.scheduler.criteria.min_success;
+  goal.max_regret = std::max(query.scheduler.criteria.max_regret, 1e-9);  // 0: the client's own
   goal.play_all = !query.scheduler.early_stop;
   goal.request_id = "hires_imagine";
   if (query.own_uncertainty) {

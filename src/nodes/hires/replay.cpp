@@ -65,9 +65,9 @@ bool SameBitsButWallTime(ImagineResult a, ImagineResult b) {
 }
 
 std::string OutcomeText(std::uint8_t outcome) {
-  static constexpr std::array<const char*, 8> kNames{
+  static constexpr std::array<const char*, 9> kNames{
       "ranked",  "ranked_at_deadline", "all_failed", "no_worker", "nothing_finished",
-      "invalid", "cancelled",          "undecided"};
+      "invalid", "cancelled",          "undecided",  "close"};
   return outcome < kNames.size() ? kNames[outcome] : fmt::format("outcome {}", outcome);
 }
 
@@ -160,6 +160,9 @@ std::vector<std::string> DifferencesOf(const ImagineResult& then, const ImagineR
   out.CompareWhole("depends_on", then.depends_on, now.depends_on);
   out.Compare("seed", then.seed, now.seed);
   out.Compare("simulated_seconds", then.simulated_seconds, now.simulated_seconds);
+  out.Compare("probability_best", then.probability_best, now.probability_best);
+  out.Compare("expected_regret", then.expected_regret, now.expected_regret);
+  out.Compare("rollouts_to_settle", then.rollouts_to_settle, now.rollouts_to_settle);
   return out.Take();
 }
 
@@ -368,6 +371,8 @@ int Replay(const ReplayOptions& options, const std::string& package_folder) {
 
 bool DependsOnMoment(const ImagineGoal& goal, const ImagineResult& result) {
   switch (result.outcome) {
+    case ImagineResult::CLOSE:
+      return HasUnplayable(result) || !result.complete;
     case ImagineResult::RANKED:
     case ImagineResult::INVALID:
       return HasUnplayable(result);

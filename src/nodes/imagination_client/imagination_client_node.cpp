@@ -393,7 +393,8 @@ void ImaginationClientNode::Finish(Session* session) {
       RankingMarkers(report.ranking, report.recommended, request.setup.robot_state.X_MB));
   if (report.outcome == imagination::ImaginationOutcome::kCancelled) {
     session->goal.setCanceled(result, report.why);
-  } else if (report.outcome == imagination::ImaginationOutcome::kRanked) {
+  } else if (report.outcome == imagination::ImaginationOutcome::kRanked ||
+             report.outcome == imagination::ImaginationOutcome::kClose) {
     session->goal.setSucceeded(result, report.why);
   } else {
     session->goal.setAborted(result, report.why);

@@ -66,7 +66,6 @@ ordered_json NextToJson(const std::optional<imagination::CostComparison>& next) 
           {"failures_more", next->failures_more},
           {"failures_more_upper", next->failures_more_upper},
           {"neither_failed", next->neither_failed},
-          {"alike", next->IsAlike()},
           {"probability", next->probability}};
 }
 
@@ -85,7 +84,11 @@ ordered_json ByCostToJson(const std::optional<imagination::CostReasons>& by_cost
   for (const auto& [code, price] : by_cost->prices) {
     prices.push_back({{"failure", base::ToString(code)}, {"price", price}});
   }
-  return {{"prices", prices},
+  return {{"probability_best", by_cost->probability},
+          {"expected_regret", by_cost->regret},
+          {"rollouts_to_settle",
+           by_cost->until_settled ? ordered_json(*by_cost->until_settled) : ordered_json()},
+          {"prices", prices},
           {"next", NextToJson(by_cost->next)},
           {"turns", TurningToJson(by_cost->turning)}};
 }
@@ -120,6 +123,8 @@ std::string OutcomeName(const imagination::Report& report) {
   switch (report.outcome) {
     case imagination::ImaginationOutcome::kRanked:
       return report.complete ? "ranked" : "ranked_at_deadline";
+    case imagination::ImaginationOutcome::kClose:
+      return "close";
     case imagination::ImaginationOutcome::kAllFailed:
       return "all_failed";
     case imagination::ImaginationOutcome::kUndecided:
@@ -141,6 +146,7 @@ nlohmann::ordered_json ToJson(const imagination::Report& report) {
   }
   return {
       {"outcome", OutcomeName(report)},
+      {"complete", report.complete},
       {"recommended", report.recommended < 0 ? ordered_json() : ordered_json(report.recommended)},
       {"why", report.why},
       {"by_cost", ByCostToJson(report.by_cost)},

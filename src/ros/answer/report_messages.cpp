@@ -22,6 +22,8 @@ std::uint8_t OutcomeCode(const hires::imagination::Report& report) {
   switch (report.outcome == ImaginationOutcome::kCancelled ? report.found : report.outcome) {
     case ImaginationOutcome::kRanked:
       return report.complete ? msg::ImagineResult::RANKED : msg::ImagineResult::RANKED_AT_DEADLINE;
+    case ImaginationOutcome::kClose:
+      return msg::ImagineResult::CLOSE;
     case ImaginationOutcome::kAllFailed:
       return msg::ImagineResult::ALL_FAILED;
     case ImaginationOutcome::kUndecided:
@@ -41,6 +43,8 @@ ImaginationOutcome OutcomeOf(std::uint8_t code) {
     case msg::ImagineResult::RANKED:
     case msg::ImagineResult::RANKED_AT_DEADLINE:
       return ImaginationOutcome::kRanked;
+    case msg::ImagineResult::CLOSE:
+      return ImaginationOutcome::kClose;
     case msg::ImagineResult::ALL_FAILED:
       return ImaginationOutcome::kAllFailed;
     case msg::ImagineResult::UNDECIDED:
@@ -289,7 +293,13 @@ msg::ImagineResult ToMsg(const hires::imagination::Report& report) {
   for (const auto& prediction : report.ranking) out.predictions.push_back(ToMsg(prediction));
   out.recommended = report.recommended;
   out.why = report.why;
-  if (report.by_cost) out.by_cost.push_back(ToMsg(*report.by_cost));
+  out.complete = report.complete;
+  if (report.by_cost) {
+    out.by_cost.push_back(ToMsg(*report.by_cost));
+    out.probability_best = report.by_cost->probability;
+    out.expected_regret = report.by_cost->regret;
+    out.rollouts_to_settle = static_cast<std::uint32_t>(report.by_cost->until_settled.value_or(0));
+  }
   out.caveats = report.caveats;
   out.seed = report.seed;
   out.wall_seconds = report.wall_seconds;
@@ -303,12 +313,16 @@ hires::imagination::Report FromMsg(const msg::ImagineResult& result) {
   if (result.outcome == msg::ImagineResult::INVALID) throw hires::base::ConfigError(result.why);
   hires::imagination::Report out;
   out.outcome = out.found = OutcomeOf(result.outcome);
-  out.complete = result.outcome == msg::ImagineResult::RANKED ||
-                 result.outcome == msg::ImagineResult::ALL_FAILED;
+  out.complete = result.complete || result.outcome == msg::ImagineResult::RANKED;
   for (const auto& prediction : result.predictions) out.ranking.push_back(FromMsg(prediction));
   out.recommended = result.recommended;
   out.why = result.why;
-  if (!result.by_cost.empty()) out.by_cost = FromMsg(result.by_cost.front());
+  if (!result.by_cost.empty()) {
+    out.by_cost = FromMsg(result.by_cost.front());
+    out.by_cost->probability = result.probability_best;
+    out.by_cost->regret = result.expected_regret;
+    if (result.rollouts_to_settle > 0) out.by_cost->until_settled = result.rollouts_to_settle;
+  }
   out.caveats = result.caveats;
   out.seed = result.seed;
   out.wall_seconds = result.wall_seconds;

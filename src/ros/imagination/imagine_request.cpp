@@ -77,6 +77,7 @@ imagination::SchedulerParams ParamsOf(const hires::ImagineGoal& goal,
   params.deadline = goal.deadline.toSec();
   params.early_stop = !goal.play_all && defaults.early_stop;
   if (goal.min_success != 0.0) params.criteria.min_success = goal.min_success;
+  if (goal.max_regret != 0.0) params.criteria.max_regret = goal.max_regret;
   if (!goal.ranking.empty()) params.criteria.rule = imagination::ParseRankingRule(goal.ranking);
   imagination::CheckParams(params);
   return params;

@@ -39,7 +39,8 @@ void AddOptions(CLI::App* app, ImagineOptions* o) {
   app->add_option("--arg", o->arguments,
                   "alternatives of one argument, separated by commas; once per argument, in order")
       ->allow_extra_args(false);
-  app->add_option("--rollouts", o->rollouts, "at most so many per combination")
+  app->add_option("--rollouts", o->rollouts,
+                  "maximum number per combination; default: as --config says, 400")
       ->check(NumberBetween(1, 100000));
   app->add_option("--seed", o->seed, "of all chance; equal seeds give equal answers")
       ->check(WholeNumber());
@@ -49,6 +50,10 @@ void AddOptions(CLI::App* app, ImagineOptions* o) {
   app->add_option("--min-success", o->min_success,
                   "share of successes that the lower end of the interval must reach")
       ->check(NumberBetween(0.001, 0.999));
+  app->add_option("--max-regret", o->max_regret,
+                  "[s] expected regret of the recommendation at which rollouts stop, for "
+                  "`--ranking cost`; default: 2")
+      ->check(NumberBetween(0.0, 1e5));
   app->add_option("--uncertainty", o->uncertainty,
                   "YAML file over the scene's own (`only: true` in it: instead), or none");
   app->add_option("--sensing", o->sensing,
@@ -146,6 +151,7 @@ ImagineQuery MakeQuery(const ImagineOptions& o) {
   if (o.deadline >= 0.0) query.scheduler.deadline = o.deadline;
   if (!o.ranking.empty()) query.scheduler.criteria.rule = imagination::ParseRankingRule(o.ranking);
   if (o.min_success > 0.0) query.scheduler.criteria.min_success = o.min_success;
+  if (o.max_regret >= 0.0) query.scheduler.criteria.max_regret = o.max_regret;
   query.validated = config.validated;
   if (o.play_all) query.scheduler.early_stop = false;
   query.threads = o.threads > 0 ? o.threads : std::max(1u, std::thread::hardware_concurrency());
@@ -294,6 +300,7 @@ void AddImagineVerb(CLI::App* app, ImagineOptions* options) {
 int ExitCodeOf(const imagination::Report& report) {
   switch (report.outcome) {
     case imagination::ImaginationOutcome::kRanked:
+    case imagination::ImaginationOutcome::kClose:
       return kExitRecommended;
     case imagination::ImaginationOutcome::kAllFailed:
       return kExitAllFailed;

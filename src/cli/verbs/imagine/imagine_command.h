@@ -21,7 +21,7 @@ struct ImagineOptions {
   std::vector<std::string> arguments, action_libraries, areas;
   int rollouts{0}, threads{0};
   std::uint64_t seed{1};
-  double deadline{-1.0}, min_success{0.0};
+  double deadline{-1.0}, min_success{0.0}, max_regret{-1.0};
   bool play_all{false}, local{false}, quiet{false};
   CLI::App* verb{nullptr};
 };
