@@ -16,6 +16,24 @@ namespace {
 
 using temporal::kForever;
 
+/// The configured value of a parameter, else the domain's, else the most cautious motion set: the
+/// first of them that is among the alternatives. Nothing where none is.
+std::optional<std::string> DefaultOf(const std::string& parameter,
+                                     const planning::ImagineData& domain,
+                                     const MonitorParams& params,
+                                     const std::vector<std::string>& alternatives) {
+  std::vector<std::string> values;
+  for (const auto* defaults : {&params.defaults, &domain.defaults}) {
+    const auto value = defaults->find(parameter);
+    if (value != defaults->end()) values.push_back(value->second);
+  }
+  values.insert(values.end(), params.motion_sets.begin(), params.motion_sets.end());
+  const auto found = std::find_first_of(values.begin(), values.end(), alternatives.begin(),
+                                        alternatives.end());
+  if (found == values.end()) return std::nullopt;
+  return *found;
+}
+
 }  // namespace
 
 // ---------------------------------------------------------------------------------------- answers
@@ -32,6 +50,7 @@ void ImaginationDesk::OnAnswer(const ImagineAnswered& answer) {
     question->answer = answer;
     return TakeRanked(&*question);
   }
+  if (!IsUnimagined(answer.outcome)) chosen_.erase(ToString(question->action));
   if (answer.outcome == Outcome::kAllFailed) return TakeFailed(&*question, answer);
   question->why_not = WhyNothing(answer);
   question->is_hopeless = question->is_invalid = answer.outcome == Outcome::kInvalid;
@@ -54,6 +73,9 @@ void ImaginationDesk::TakeRanked(Question* question) {
     question->answer.reset();
     question->is_hopeless = true;
     return;
+  }
+  if (session_.params().imagination != MonitorParams::ImaginePolicy::kThesis) {
+    chosen_[ToString(question->action)] = best;
   }
   ExpectAsImagined(answer, question->target, &session_);
   StepRun& step = run.at(question->step);
@@ -99,7 +121,7 @@ bool ImaginationDesk::MayStart(int step) {
   }
   if (question->undecided) return true;  // nothing more is on its way
   if (!question->limit) {
-    question->limit = std::max(session_.now(), session_.progress().network().LatestStart(step));
+    question->limit = std::max(session_.now(), LimitOf(*question));
     MoveTo(question, DeadlineOf(*question));
   }
   if (session_.now() < *question->limit) return false;
@@ -151,17 +173,37 @@ std::vector<std::string> ImaginationDesk::Unimagined() const {
   return texts;
 }
 
+/// The step takes what was recommended for the same action and alternatives before.
+/// @return false: there is no such choice, and nothing has changed.
+bool ImaginationDesk::TakeChosen(const Question& question) {
+  const auto chosen = chosen_.find(ToString(question.action));
+  if (chosen == chosen_.end()) return false;
+  PlanRun& run = session_.progress().run();
+  const std::string wrong = run.Instantiate(question.target, chosen->second.arguments,
+                                            session_.domain(), session_.operators());
+  if (!wrong.empty()) {
+    session_.outbox().Warning(fmt::format("the choice of the last answer, {}, cannot be kept: {}",
+                                          base::ToString(chosen->second), wrong));
+    return false;
+  }
+  session_.progress().network().Tighten(question.target,
+                                        {0.0, kForever, run.at(question.target).expected});
+  return true;
+}
+
 void ImaginationDesk::TakeDefaults(Question* question) {
-  SetDefaults(*question);
+  const bool is_kept = TakeChosen(*question);
+  if (!is_kept) SetDefaults(*question);
   StepRun& target = session_.progress().run().at(question->target);
   std::string why = question->why_not;
   if (question->request != 0 || why.empty()) {
     why = "there was no answer in time" + (why.empty() ? "" : "; " + why);
   }
-  session_.outbox().Warning(
-      fmt::format("{} is carried out without imagination, how likely it succeeds is unknown: {}",
-                  base::ToString(target.action), why));
-  target.note = "not imagined: " + why;
+  session_.outbox().Warning(fmt::format(
+      is_kept ? "{} keeps what was imagined for an earlier start, from this one it was not: {}"
+              : "{} is carried out without imagination, how likely it succeeds is unknown: {}",
+      base::ToString(target.action), why));
+  target.note = (is_kept ? "imagined for an earlier start: " : "not imagined: ") + why;
   StepRun& step = session_.progress().run().at(question->step);
   step.phase = StepPhase::kSkipped;
   step.note = why;
@@ -173,12 +215,17 @@ void ImaginationDesk::SetDefaults(const Question& question) {
   if (!entry.imagine) return;
   std::vector<std::string> arguments = run.at(question.target).action.arguments;
   for (std::size_t i = 0; i < arguments.size() && i < entry.arguments.size(); ++i) {
-    const auto value = entry.imagine->defaults.find(entry.arguments[i]);
-    if (value == entry.imagine->defaults.end()) continue;
+    const std::string& name = entry.arguments[i];
+    const auto& parameters = entry.imagine->parameters;
+    if (std::count(parameters.begin(), parameters.end(), name) == 0) continue;
     const auto& list = question.action.alternatives[i];
-    if (std::find(list.begin(), list.end(), value->second) != list.end()) {
-      arguments[i] = value->second;
-    }
+    arguments[i] = DefaultOf(name, *entry.imagine, session_.params(), list).value_or(arguments[i]);
+    const auto wanted = session_.params().defaults.find(name);
+    if (wanted == session_.params().defaults.end() || wanted->second == arguments[i]) continue;
+    session_.outbox().Warning(
+        fmt::format("{}: default {}={} is not among the alternatives {}; {} is used",
+                    question.action.name, name, wanted->second, base::Join(list, ", "),
+                    arguments[i]));
   }
   const std::string wrong =
       run.Instantiate(question.target, arguments, session_.domain(), session_.operators());
@@ -234,6 +281,7 @@ void ImaginationDesk::OnChanged(const GeometryChanged& change) {
   }
   session_.state().Know(changed);
   for (Question* question : affected) {
+    if (question->answer) chosen_.erase(ToString(question->action));  // it rests on what changed
     AskAgain(question, base::Join({changed.begin(), changed.end()}, ", ") + " changed");
   }
 }

@@ -54,7 +54,11 @@ void ImaginationDesk::Open() {
     if (entry.imagine) question.on_late = entry.imagine->on_late;
     TakeOver(&old, &question);
     questions_.push_back(std::move(question));
-    if (questions_.back().answer) TakeRanked(&questions_.back());
+    if (questions_.back().answer) {
+      TakeRanked(&questions_.back());
+    } else {
+      TakeChosen(questions_.back());
+    }
   }
   for (Question& question : old) Cancel(&question);
 }
@@ -91,6 +95,7 @@ void ImaginationDesk::TakeOver(std::vector<Question>* old, Question* question) {
 void ImaginationDesk::Close() {
   for (Question& question : questions_) Cancel(&question);
   questions_.clear();
+  chosen_.clear();
 }
 
 ImaginationDesk::Question* ImaginationDesk::FindTarget(int step) {
@@ -121,11 +126,21 @@ std::set<std::string> ImaginationDesk::StartOf(const Facts& projected) const {
 double ImaginationDesk::DeadlineOf(const Question& question) {
   const MonitorParams& params = session_.params();
   const bool is_patient = question.on_late == planning::OnLate::kWait || params.dry_run;
-  const double latest =
-      is_patient
-          ? *question.asked + params.max_wait
-          : question.limit.value_or(session_.progress().network().LatestStart(question.target));
+  const double latest = is_patient ? *question.asked + params.max_wait
+                                   : question.limit.value_or(LimitOf(question));
   return std::max(session_.now(), latest - params.arrival_margin);
+}
+
+/// [s] Until when the step waits for an answer: its latest start, or `late_wait` after the question
+/// where that is later and the plan's bounds allow it. A start that keeps changing delays the step
+/// by at most `max_wait`.
+double ImaginationDesk::LimitOf(const Question& question) const {
+  const MonitorParams& params = session_.params();
+  const PlanNetwork& network = session_.progress().network();
+  const double ready = session_.progress().run().at(question.target).ready.value_or(session_.now());
+  const double wait = std::min({question.since + params.late_wait, ready + params.max_wait,
+                                network.StartOf(question.target).latest});
+  return std::max(network.LatestStart(question.target), wait);
 }
 
 void ImaginationDesk::Ask(Question* question) {
@@ -133,7 +148,7 @@ void ImaginationDesk::Ask(Question* question) {
   question->start = StartOf(projected);
   question->known = session_.state().instances();
   question->request = session_.outbox().NewRequest();
-  if (!question->asked) question->asked = session_.now();
+  if (!question->asked) question->asked = question->since = session_.now();
   question->deadline = DeadlineOf(*question);
   question->retry.reset();
   question->differs.reset();
@@ -160,6 +175,8 @@ void ImaginationDesk::AskAgain(Question* question, const std::string& why) {
   question->is_hopeless = question->is_invalid = false;
   question->undecided.reset();
   question->why_not = why;
+  question->since = session_.now();
+  question->limit.reset();
   Ask(question);
 }
 

@@ -18,7 +18,8 @@ std::vector<int> InformedSteps(const PlanRun& run);
 
 /// Looks after the `!imagine` steps of the plan: asks as soon as the state is known in which the
 /// imagined step will start, asks again when it changes, moves deadlines with the plan, and brings
-/// in the answers, or the defaults where there is none in time.
+/// in the answers. Where there is none in time, a step keeps what was chosen for the same action
+/// and alternatives before the plan was repaired, else it takes the defaults.
 class ImaginationDesk {
  public:
   explicit ImaginationDesk(Session* session) : session_(*session) {}
@@ -30,7 +31,7 @@ class ImaginationDesk {
   void Update();
   /// Whether nothing is waited for any more before the step begins, which could begin now.
   bool MayStart(int step);
-  /// The step begins: where there is no answer it takes the defaults.
+  /// The step begins: where there is no answer it takes the last choice, else the defaults.
   void Settle(int step);
   /// Whether no answer is awaited any more, also for steps whose turn has not come. Where nobody
   /// can answer, that is one.
@@ -59,6 +60,7 @@ class ImaginationDesk {
     std::set<std::string> known;  ///< instances when it was asked
     double deadline{std::numeric_limits<double>::infinity()};
     std::optional<double> asked;    ///< [s] for the first time
+    double since{0.0};              ///< [s] asked for the first time for this start
     std::optional<double> retry;    ///< [s] not before
     std::optional<double> limit;    ///< [s] the step waits for nothing else, and not beyond this
     std::optional<double> differs;  ///< [s] since when the start is another one
@@ -76,9 +78,11 @@ class ImaginationDesk {
   void Cancel(Question* question);
   void MoveTo(Question* question, double deadline);
   double DeadlineOf(const Question& question);
+  double LimitOf(const Question& question) const;
   int FirstRequestFor(const base::ActionTemplate& action, int request);
   void TakeRanked(Question* question);
   void TakeFailed(Question* question, const ImagineAnswered& answer);
+  bool TakeChosen(const Question& question);
   void TakeDefaults(Question* question);
   void SetDefaults(const Question& question);
   bool IsCarried(const std::string& instance) const;
@@ -87,6 +91,9 @@ class ImaginationDesk {
   Session& session_;
   std::vector<Question> questions_;
   std::map<std::string, int> first_requests_;  // by action
+  /// What was recommended last for an action of this task. A step that is planned again keeps it
+  /// until there is a new answer.
+  std::map<std::string, base::ActionCall> chosen_;
 };
 
 }  // namespace hires::execution

@@ -3,8 +3,10 @@
 #include <fmt/format.h>
 
 #include <filesystem>
+#include <set>
 
 #include "hires/base/error.h"
+#include "hires/base/text.h"
 
 namespace hires::execution {
 namespace {
@@ -29,6 +31,7 @@ MonitorParams ReadMonitor(ParamReader in) {
   params.planning_timeout = in.Get("planning_timeout", Between(0.1, kLongest));
   params.arrival_margin = in.Get("arrival_margin", Between(0.0, kLongest));
   params.answer_grace = in.Get("answer_grace", Between(0.0, kLongest));
+  if (in.Has("late_wait")) params.late_wait = in.Get("late_wait", Between(0.0, kLongest));
   params.max_wait = in.Get("max_wait", Between(0.0, kLongest));
   params.retry_period = in.Get("retry_period", Between(0.1, kLongest));
   params.break_delay = in.Get("break_delay", Between(0.0, kLongest));
@@ -65,6 +68,31 @@ MonitorParams::ImaginePolicy ReadImaginePolicy(const std::string& word) {
       fmt::format("imagination is '{}', wanted domain, thesis or off", word.substr(0, 200)));
 }
 
+std::map<std::string, std::string> ReadDefaults(const std::string& text,
+                                                const planning::OperatorData& operators) {
+  std::set<std::string> known;
+  for (const auto& [name, entry] : operators.operators) {
+    if (!entry.imagine) continue;
+    known.insert(entry.imagine->parameters.begin(), entry.imagine->parameters.end());
+  }
+  std::map<std::string, std::string> defaults;
+  std::vector<std::string> errors;
+  for (const std::string& item : base::Split(base::ToLower(text), ',')) {
+    if (item.empty()) continue;
+    const std::size_t equals = item.find('=');
+    const std::string name = item.substr(0, equals);
+    if (equals == std::string::npos || equals + 1 == item.size()) {
+      errors.push_back(fmt::format("'{}' is no PARAMETER=VALUE, e.g. motion_set=slow", item));
+    } else if (known.count(name) == 0) {
+      errors.push_back(base::UnknownName("imagined parameter", name, {known.begin(), known.end()}));
+    } else {
+      defaults[name] = item.substr(equals + 1);
+    }
+  }
+  if (!errors.empty()) throw base::ConfigError("default: " + base::Join(errors, "; "));
+  return defaults;
+}
+
 MonitorConfig ReadMonitorConfig(const std::string& path) {
   ParamReader in = ParamReader::FromFile(path);
   MonitorConfig config;
@@ -73,6 +101,7 @@ MonitorConfig ReadMonitorConfig(const std::string& path) {
   for (const std::string& file : in.GetStrings("ontology")) {
     config.ontology.push_back(PathFrom(path, file));
   }
+  if (in.Has("robot")) config.robot = PathFrom(path, in.GetString("robot"));
   config.monitor = ReadMonitor(in.Sub("monitor"));
   config.imagining = ReadImagining(in.Sub("imagining"));
   config.servers = ReadServers(in.Sub("servers"));

@@ -38,6 +38,7 @@ class MiddleLayer {
   base::Failure Refusal(const base::ActionCall& action) const;
   void Cancel(int activity);
   void CancelAll() { runner_.CancelAll(); }
+  void FailAll(const base::Failure& failure) { runner_.FailAll(failure); }
 
   void Hear(const SensorNews& news, const simulation::LaserParams& laser);
   /// What the tracker remembers of objects, as of `stamp`.

@@ -8,6 +8,7 @@
 #include "hires/execution/record_fluent.h"
 #include "hires/imagination/imagine_answer.h"
 #include "hires/knowledge/state_view.h"
+#include "robot/profile/motion_set_order.h"
 
 namespace hires::loop {
 namespace {
@@ -19,6 +20,8 @@ execution::MonitorParams ParamsOf(const LoopSetup::Parts& parts, const LoopOrder
   if (!order.imagination.empty()) {
     params.imagination = execution::ReadImaginePolicy(order.imagination);
   }
+  params.defaults = execution::ReadDefaults(order.defaults, parts.operators);
+  params.motion_sets = robot::MostCautiousFirst(parts.world.scene->robot.profile.motion_sets);
   params.dry_run = params.dry_run || order.dry_run;
   return params;
 }

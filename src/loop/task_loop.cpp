@@ -125,6 +125,9 @@ class TaskPlay {
 
   LoopRun Run(const OnAchieveStatus& on_status, const std::function<bool()>& cancelled) {
     robot_.Begin();
+    for (const double loss : order_.middle_layer_losses) {
+      clock_.At(loss, [this] { middle_layer_.FailAll(base::FailureCode::kUnavailable); });
+    }
     LoopRun run;
     double next_status = 0.0, end = order_.time_limit + kStart;
     bool is_stopping = false;

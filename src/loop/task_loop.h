@@ -57,11 +57,15 @@ struct LoopOrder {
   std::string truth;        ///< of config/truths, or a file; empty: same
   std::string sensing;      ///< fitted, ideal, pictures: in place of the truth's; empty: as it says
   std::string imagination;  ///< domain, thesis, off; empty: as the execution monitor is configured
+  std::string defaults;     ///< as execution::ReadDefaults; empty: the domain's
   std::uint64_t seed{1};    ///< of the hidden truth, of all noise and of imagination
   int rollouts{0};          ///< per combination of alternatives; 0: as the monitor is configured
   int threads{1};           ///< that play rollouts; their number changes nothing
   bool dry_run{false};      ///< planned and imagined alone (execution::MonitorParams)
   double time_limit{900.0};  ///< [s] of virtual time
+  /// [s] on the clock of StepStatus at which the middle layer is lost and starts again: its actions
+  /// fail.
+  std::vector<double> middle_layer_losses;
   std::string store;         ///< file, new, that keeps what the Blackboard was told; empty: none
 };
 

@@ -60,7 +60,7 @@ void CarFollower::SetMotionSet(const robot::MotionSet& limits) {
 }
 
 double CarFollower::Deceleration() const {
-  return std::min(params_.deceleration, limits_.max_linear_acceleration);
+  return std::min(params_.deceleration, limits_.linear_deceleration());
 }
 
 /// How fast it may pass each pose: on arcs so much within the limit of turning that errors can be
@@ -170,7 +170,7 @@ double CarFollower::SpeedFor(double speed_now) const {
   const double gaining =
       std::min(limits_.max_linear_acceleration, limits_.max_angular_acceleration / sharpest_);
   const double period = params_.control_period;
-  return std::max(0.0, std::clamp(fastest, speed_now - limits_.max_linear_acceleration * period,
+  return std::max(0.0, std::clamp(fastest, speed_now - limits_.linear_deceleration() * period,
                                   std::max(speed_now, speed_now + gaining * period)));
 }
 
@@ -187,7 +187,7 @@ geometry::Twist2 CarFollower::Velocity(const geometry::Twist2& V_B) const {
 geometry::Twist2 CarFollower::Braked(const geometry::Twist2& V_B) const {
   const double speed = std::abs(V_B.vx);
   const double slower =
-      std::max(0.0, speed - limits_.max_linear_acceleration * params_.control_period);
+      std::max(0.0, speed - limits_.linear_deceleration() * params_.control_period);
   const double share = speed > 0.0 ? slower / speed : 0.0;
   const double most = slower * sharpest_;
   return {share * V_B.vx, 0.0, std::clamp(share * V_B.wz, -most, most)};
@@ -197,7 +197,7 @@ geometry::Twist2 CarFollower::Braked(const geometry::Twist2& V_B) const {
 bool CarFollower::IsFree(const Costmap& costmap, const geometry::Pose2& X_MB,
                          const geometry::Twist2& V_B) {
   SweptFootprint sweep(footprint_, kOutlineStep, kAngularStep);
-  const double deceleration = limits_.max_linear_acceleration;
+  const double deceleration = limits_.linear_deceleration();
   const double stopping = deceleration > 0.0 ? std::abs(V_B.vx) / deceleration : 0.0;
   if (!sweep.IsFree(costmap, X_MB, V_B, params_.control_period + 0.5 * stopping)) return false;
   const double ahead = place_ + std::abs(V_B.vx) * stopping + kLookedAhead;

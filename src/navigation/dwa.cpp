@@ -344,7 +344,7 @@ bool DwaPlanner::Impl::PrepareGrids(const Costmap& costmap, const geometry::Pose
 double DwaPlanner::Impl::Duration() const {
   const double speed = limits_.max_linear_velocity;
   const double stopping = params_.control_period + params_.stop_time_buffer +
-                          TimeToStop(speed, limits_.max_linear_acceleration);
+                          TimeToStop(speed, limits_.linear_deceleration());
   const double in_window = 0.8 * (kLocalHalfWidth - params_.forward_point_distance);
   const double longest = speed > 0.0 ? in_window / speed : params_.sim_time;
   return std::max(params_.sim_time, std::min(stopping, longest));
@@ -437,9 +437,9 @@ DwaResult DwaPlanner::Impl::AtGoal(const Costmap& costmap, const geometry::Pose2
 /// window brings it back to a goal that it missed once.
 bool DwaPlanner::Impl::IsBrisk() const {
   const double way = 0.5 * limits_.max_linear_velocity *
-                     TimeToStop(limits_.max_linear_velocity, limits_.max_linear_acceleration);
+                     TimeToStop(limits_.max_linear_velocity, limits_.linear_deceleration());
   const double turn = 0.5 * limits_.max_angular_velocity *
-                      TimeToStop(limits_.max_angular_velocity, limits_.max_angular_acceleration);
+                      TimeToStop(limits_.max_angular_velocity, limits_.angular_deceleration());
   return way <= kBriskShare * params_.xy_goal_tolerance &&
          turn <= kBriskTurns * params_.yaw_goal_tolerance;
 }
@@ -483,7 +483,7 @@ DwaResult DwaPlanner::Impl::Turn(const Costmap& costmap, const geometry::Pose2& 
 /// [rad/s] As the original's.
 double DwaPlanner::Impl::TurningSpeed(double angle) const {
   const double slowest = std::min(params_.min_angular_velocity, limits_.max_angular_velocity);
-  const double stoppable = std::sqrt(2.0 * limits_.max_angular_acceleration * angle);
+  const double stoppable = std::sqrt(2.0 * AngularRamp(limits_) * angle);
   return std::min({std::max(angle, slowest), stoppable, limits_.max_angular_velocity});
 }
 
@@ -503,7 +503,7 @@ DwaResult DwaPlanner::Impl::MakeRoom(const Costmap& costmap, const geometry::Pos
       CanMoveSideways() ? params_.max_lateral_velocity : params_.min_linear_velocity;
   const double speed =
       std::min({creeping, limits_.max_linear_velocity, distance / params_.control_period,
-                std::sqrt(2.0 * limits_.max_linear_acceleration * distance)});
+                std::sqrt(2.0 * LinearRamp(limits_) * distance)});
   const Eigen::Vector2d now(V_B.vx, V_B.vy);
   Eigen::Vector2d wanted = to_room / distance * speed;
   if (!CanMoveSideways()) wanted.y() = 0.0;  // the place was chosen on its line
@@ -568,7 +568,9 @@ void DwaPlanner::SetPath(const std::vector<geometry::Pose2>& path) {
 void DwaPlanner::SetMotionSet(const robot::MotionSet& limits) {
   HIRES_CHECK(IsUsable(limits.max_linear_velocity) && IsUsable(limits.max_angular_velocity) &&
                   IsUsable(limits.max_linear_acceleration) &&
-                  IsUsable(limits.max_angular_acceleration),
+                  IsUsable(limits.max_angular_acceleration) &&
+                  IsUsable(limits.max_linear_deceleration) &&
+                  IsUsable(limits.max_angular_deceleration),
               "limits of motion are finite and not negative");
   impl_->limits_ = limits;
   impl_->approach_.SetMotionSet(limits);

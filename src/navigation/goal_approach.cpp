@@ -78,7 +78,7 @@ bool GoalWatch::Swings(const Pose2& X_MB, const Vector2d& p_MGoal) {
 
 double SpeedOfTurn(double angle, const robot::MotionSet& limits) {
   const double deceleration =
-      std::min(kTurnDeceleration, kBrakingShare * limits.max_angular_acceleration);
+      std::min(kTurnDeceleration, kBrakingShare * AngularRamp(limits));
   const double speed = std::min(ApproachSpeed(std::abs(angle), deceleration, kReaction),
                                 limits.max_angular_velocity);
   return std::copysign(speed, angle);
@@ -208,7 +208,7 @@ std::optional<Twist2> GoalApproach::Drive(const Pose2& X_MB, const Twist2& V_B) 
   const double left = wanted.norm();
   if (left <= kReached) return std::nullopt;
   const double deceleration =
-      std::min(kDeceleration, kBrakingShare * limits_.max_linear_acceleration);
+      std::min(kDeceleration, kBrakingShare * LinearRamp(limits_));
   const double speed = std::min({ApproachSpeed(left, deceleration, kReaction), MostTowards(wanted),
                                  limits_.max_linear_velocity});
   const double heading = HeadingTowards(X_MB.position(), wanted.x());

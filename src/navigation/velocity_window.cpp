@@ -18,12 +18,13 @@ constexpr int kMostSpeeds = 20, kMostTurns = 40;
 
 constexpr double kSlack = 1e-4;  // [m/s, rad/s] so that a limit itself is never rounded away
 
-/// What is reachable from `now` by `change` at most, within lower..upper.
+/// What is reachable from `now` by `gain` away from 0 and `loss` towards it, within lower..upper.
 struct Range {
   double from, to;
 
-  Range(double now, double change, double lower, double upper)
-      : from(std::clamp(now - change, lower, upper)), to(std::clamp(now + change, lower, upper)) {}
+  Range(double now, double gain, double loss, double lower, double upper)
+      : from(std::clamp(now - (now > 0.0 ? loss : gain), lower, upper)),
+        to(std::clamp(now + (now < 0.0 ? loss : gain), lower, upper)) {}
 
   std::vector<double> Samples(int count) const { return SampleAxis(from, to, count); }
   std::vector<double> FineSamples(int count, int most) const {
@@ -90,14 +91,17 @@ std::vector<geometry::Twist2> ReachableVelocities(const DwaParams& params,
                                                   const geometry::Twist2& V_B) {
   const double linear_change = limits.max_linear_acceleration * params.control_period;
   const double angular_change = limits.max_angular_acceleration * params.control_period;
+  const double braking = limits.linear_deceleration() * params.control_period;
+  const double turn_braking = limits.angular_deceleration() * params.control_period;
   const double lateral = std::min(params.max_lateral_velocity, limits.max_linear_velocity);
   const double turning = limits.max_angular_velocity;
   const SmallestUseful smallest(params, limits, V_B);
   std::vector<geometry::Twist2> velocities;
-  const Range forward(V_B.vx, linear_change, 0.0, limits.max_linear_velocity);
-  const Range turn(V_B.wz, angular_change, -turning, turning);
+  const Range forward(V_B.vx, linear_change, braking, 0.0, limits.max_linear_velocity);
+  const Range turn(V_B.wz, angular_change, turn_braking, -turning, turning);
   const bool is_fine = lateral == 0.0;
-  const auto ys = Range(V_B.vy, linear_change, -lateral, lateral).Samples(params.vy_samples);
+  const auto ys =
+      Range(V_B.vy, linear_change, braking, -lateral, lateral).Samples(params.vy_samples);
   const auto turns = is_fine ? turn.FineSamples(params.vtheta_samples, kMostTurns)
                              : turn.Samples(params.vtheta_samples);
   for (double vx : is_fine ? forward.FineSamples(params.vx_samples, kMostSpeeds)
@@ -115,9 +119,9 @@ std::vector<geometry::Twist2> ReachableVelocities(const DwaParams& params,
 geometry::Twist2 Braked(const geometry::Twist2& V_B, const robot::MotionSet& limits,
                         double period) {
   const double speed = std::hypot(V_B.vx, V_B.vy);
-  const double slower = std::max(0.0, speed - limits.max_linear_acceleration * period);
+  const double slower = std::max(0.0, speed - limits.linear_deceleration() * period);
   const double scale = speed > 0.0 ? slower / speed : 0.0;
-  const double turning = std::max(0.0, std::abs(V_B.wz) - limits.max_angular_acceleration * period);
+  const double turning = std::max(0.0, std::abs(V_B.wz) - limits.angular_deceleration() * period);
   return {V_B.vx * scale, V_B.vy * scale, std::copysign(turning, V_B.wz)};
 }
 
@@ -126,14 +130,22 @@ bool IsStopped(const geometry::Twist2& V_B, const DwaParams& params) {
          std::abs(V_B.wz) <= params.stopped_angular_velocity;
 }
 
+double LinearRamp(const robot::MotionSet& limits) {
+  return std::min(limits.max_linear_acceleration, limits.linear_deceleration());
+}
+
+double AngularRamp(const robot::MotionSet& limits) {
+  return std::min(limits.max_angular_acceleration, limits.angular_deceleration());
+}
+
 double TimeToStop(double velocity, double acceleration) {
   return acceleration > 0.0 ? std::abs(velocity) / acceleration : 0.0;
 }
 
 double TimeToCover(const geometry::Twist2& V_B, const robot::MotionSet& limits, double period) {
   return period +
-         0.5 * std::max(TimeToStop(std::hypot(V_B.vx, V_B.vy), limits.max_linear_acceleration),
-                        TimeToStop(V_B.wz, limits.max_angular_acceleration));
+         0.5 * std::max(TimeToStop(std::hypot(V_B.vx, V_B.vy), limits.linear_deceleration()),
+                        TimeToStop(V_B.wz, limits.angular_deceleration()));
 }
 
 double Approach(double now, double wanted, double change) {

@@ -39,6 +39,10 @@ geometry::Twist2 Braked(const geometry::Twist2& V_B, const robot::MotionSet& lim
 
 bool IsStopped(const geometry::Twist2& V_B, const DwaParams& params);
 
+/// [m/s^2], [rad/s^2] What a ramp that is as steep in both directions may plan to brake with.
+double LinearRamp(const robot::MotionSet& limits);
+double AngularRamp(const robot::MotionSet& limits);
+
 /// [s] A base that cannot brake counts as one that need not.
 double TimeToStop(double velocity, double acceleration);
 

@@ -1,6 +1,7 @@
 #include "hires/robot/robot_profile.h"
 
 #include <fmt/format.h>
+#include <yaml-cpp/yaml.h>
 
 #include <algorithm>
 #include <filesystem>
@@ -29,6 +30,7 @@ using base::Between;
 using base::ParamReader;
 using geometry::Pose3;
 
+constexpr double kLeastDeceleration = 0.001;  // [m/s^2], [rad/s^2]
 constexpr double kWidestRobot = 10.0;  // [m] a larger one is asked about its units
 
 MotionSet ReadMotionSet(ParamReader in) {
@@ -39,6 +41,11 @@ MotionSet ReadMotionSet(ParamReader in) {
   set.max_angular_velocity = in.Get("max_angular_velocity", Between(0.0, 100.0));
   set.max_linear_acceleration = in.Get("max_linear_acceleration", Between(0.0, 1000.0));
   set.max_angular_acceleration = in.Get("max_angular_acceleration", Between(0.0, 1000.0));
+  const auto read = [&in](const char* key, double* value) {
+    if (in.Has(key)) *value = in.Get(key, Between(kLeastDeceleration, 1000.0));
+  };
+  read("max_linear_deceleration", &set.max_linear_deceleration);
+  read("max_angular_deceleration", &set.max_angular_deceleration);
   return set;
 }
 
@@ -116,6 +123,13 @@ BaseControllerParams ReadBaseController(BaseControllerParams params, ParamReader
   };
   read("command_timeout", Between(0.001, 60.0), &params.command_timeout);
   read("max_linear_jerk", Between(0.0, 1e6), &params.max_linear_jerk);
+  read("emergency_deceleration", Between(kLeastDeceleration, 1000.0),
+       &params.emergency_deceleration);
+  if (params.emergency_deceleration > 0.0 && params.stops_at_timeout) {
+    in.Fail("emergency_deceleration",
+            "expected none with `at_timeout: stop`, which stops at once; write `at_timeout: ramp`, "
+            "or leave it out");
+  }
   read("command_lag", Between(0.0, 10.0), &params.command_lag);
   read("loop_frequency", Between(0.0, 1e4), &params.loop_frequency);
   read("loop_damping", Between(0.0, 100.0), &params.loop_damping);
@@ -194,13 +208,69 @@ MotionSet LargestOf(const std::map<std::string, MotionSet>& sets) {
                std::max(largest.max_linear_acceleration, set.max_linear_acceleration),
                std::max(largest.max_angular_acceleration, set.max_angular_acceleration)};
   }
+  double linear = 0.0, angular = 0.0;
+  bool is_linear_given = false, is_angular_given = false;
+  for (const auto& [name, set] : sets) {
+    linear = std::max(linear, set.linear_deceleration());
+    angular = std::max(angular, set.angular_deceleration());
+    is_linear_given = is_linear_given || set.max_linear_deceleration > 0.0;
+    is_angular_given = is_angular_given || set.max_angular_deceleration > 0.0;
+  }
+  if (is_linear_given) largest.max_linear_deceleration = linear;
+  if (is_angular_given) largest.max_angular_deceleration = angular;
   return largest;
 }
 
-void ReadMotion(ParamReader* in, RobotProfile* profile) {
+/// Decelerations in parameters of navigation, at any depth: `decel_lim_x` and `decel_lim_theta`
+/// (Nav2, dwb_core), x and theta of `max_decel` (Nav2, velocity smoother). The smallest counts where
+/// there are several: the base brakes no harder than each allows.
+void FindDecelerations(const YAML::Node& node, const std::string& path, MotionSet* found) {
+  if (!node.IsMap()) return;
+  const auto take = [&path](const std::string& key, const YAML::Node& value, double* least) {
+    const double size = std::abs(value.as<double>(0.0));
+    if (!(size >= kLeastDeceleration)) {
+      throw base::ConfigError(
+          fmt::format("{}: {} in line {} is '{}', expected a deceleration other than 0, e.g. -2.5",
+                      path, key, value.Mark().line + 1, value.as<std::string>("no number")));
+    }
+    *least = *least > 0.0 ? std::min(*least, size) : size;
+  };
+  for (const auto& entry : node) {
+    const auto key = entry.first.as<std::string>("");
+    const YAML::Node& value = entry.second;
+    const bool is_smoother = key == "max_decel" && value.IsSequence() && value.size() == 3;
+    if (key == "decel_lim_x" || is_smoother)
+      take(key, is_smoother ? value[0] : value, &found->max_linear_deceleration);
+    if (key == "decel_lim_theta" || is_smoother)
+      take(key, is_smoother ? value[2] : value, &found->max_angular_deceleration);
+    FindDecelerations(value, path, found);
+  }
+}
+
+/// For each motion set that does not define its own.
+void ReadNavigation(const std::string& path, std::map<std::string, MotionSet>* sets) {
+  MotionSet found;
+  try {
+    FindDecelerations(YAML::LoadFile(path), path, &found);
+  } catch (const YAML::Exception& error) {
+    throw base::ConfigError(fmt::format("{}: cannot be read as YAML: {}", path, error.what()));
+  }
+  for (auto& [name, set] : *sets) {
+    if (set.max_linear_deceleration == 0.0)
+      set.max_linear_deceleration = found.max_linear_deceleration;
+    if (set.max_angular_deceleration == 0.0)
+      set.max_angular_deceleration = found.max_angular_deceleration;
+  }
+}
+
+void ReadMotion(const std::string& path, ParamReader* in, RobotProfile* profile) {
   std::vector<std::string> needed{"urdf"};
   if (in->Has("motion_sets")) {
     profile->motion_sets = ReadMotionSets(in->Sub("motion_sets"));
+    if (in->Has("navigation")) {
+      const auto folder = std::filesystem::path(path).parent_path();
+      ReadNavigation((folder / in->GetString("navigation")).string(), &profile->motion_sets);
+    }
     profile->base_controller.limits = LargestOf(profile->motion_sets);
     if (profile->motion_sets.size() == 1) {
       profile->default_motion_set = profile->motion_sets.begin()->first;
@@ -218,9 +288,9 @@ void ReadMotion(ParamReader* in, RobotProfile* profile) {
   }
 }
 
-RobotProfile ReadProfile(ParamReader* in) {
+RobotProfile ReadProfile(const std::string& path, ParamReader* in) {
   RobotProfile profile;
-  ReadMotion(in, &profile);
+  ReadMotion(path, in, &profile);
   profile.urdf = in->GetString("urdf");
   if (in->Has("base_link")) profile.base_link = in->GetString("base_link");
   if (in->Has("tray_link")) profile.tray_link = in->GetString("tray_link");
@@ -287,6 +357,12 @@ void AddTo(base::Hasher* hash, const MotionSet& set) {
   hash->Add(set.max_angular_velocity);
   hash->Add(set.max_linear_acceleration);
   hash->Add(set.max_angular_acceleration);
+  // Only then, so that what was measured without decelerations keeps its hash.
+  if (set.max_linear_deceleration > 0.0) hash->Add(set.max_linear_deceleration);
+  if (set.max_angular_deceleration > 0.0) {
+    hash->Add("angular");
+    hash->Add(set.max_angular_deceleration);
+  }
 }
 
 void AddTo(base::Hasher* hash, const CasterParams& params) {
@@ -309,6 +385,10 @@ void AddTo(base::Hasher* hash, const BaseControllerParams& params) {
   }
   // Only then, so that what was measured with a base that ramps and drives sideways keeps its hash.
   if (params.stops_at_timeout) hash->Add("stops_at_timeout");
+  if (params.emergency_deceleration > 0.0) {
+    hash->Add("emergency_deceleration");
+    hash->Add(params.emergency_deceleration);
+  }
   if (params.drive != Drive::kOmnidirectional) hash->Add(ToString(params.drive));
   if (params.drive == Drive::kCarLike) hash->Add(params.min_turning_radius);
   if (params.casters) AddTo(hash, *params.casters);
@@ -576,7 +656,7 @@ Robot LoadRobot(const std::string& profile_path) {
   ParamReader in = ParamReader::FromFile(profile_path);
   RequireSomeProfile(in, profile_path);
   Robot robot;
-  robot.profile = ReadProfile(&in);
+  robot.profile = ReadProfile(profile_path, &in);
   const UrdfFile urdf = UrdfIn(in, profile_path, robot.profile);
   const std::string xml = ReadUrdfFile(urdf);
   UrdfReading reading = ReadUrdf(xml, urdf.path);

@@ -80,12 +80,18 @@ void BaseDrive::StandAtOnce() {
   for (Axis* axis : {&x_, &y_, &yaw_}) axis->ramp = axis->ramp_rate = 0.0;
 }
 
-void BaseDrive::StepRamp(const geometry::Twist2& target, double dt) {
+void BaseDrive::StepRamp(const geometry::Twist2& target, bool is_late, double dt) {
   const double dx = target.vx - x_.ramp, dy = target.vy - y_.ramp, dw = target.wz - yaw_.ramp;
   const robot::MotionSet& limits = params_.limits;
-  const double steps_needed = std::max({StepsFor(dx, limits.max_linear_acceleration * dt),
-                                        StepsFor(dy, limits.max_linear_acceleration * dt),
-                                        StepsFor(dw, limits.max_angular_acceleration * dt), 1.0});
+  const double braking = is_late && params_.emergency_deceleration > 0.0
+                             ? params_.emergency_deceleration
+                             : limits.linear_deceleration();
+  const bool slows = x_.ramp * dx + y_.ramp * dy < 0.0, slows_turning = yaw_.ramp * dw < 0.0;
+  const double linear = slows ? braking : limits.max_linear_acceleration;
+  const double angular =
+      slows_turning ? limits.angular_deceleration() : limits.max_angular_acceleration;
+  const double steps_needed = std::max(
+      {StepsFor(dx, linear * dt), StepsFor(dy, linear * dt), StepsFor(dw, angular * dt), 1.0});
   const auto advance = [&](Axis* axis, double distance, double jerk) {
     double rate = distance / (steps_needed * dt);
     if (jerk > 0.0) rate = JerkLimitedRate(axis->ramp_rate, rate, distance, jerk, dt);
@@ -175,7 +181,7 @@ void BaseDrive::Step(double time, double dt, double slip, double traction) {
   if (is_late && params_.stops_at_timeout) {
     StandAtOnce();
   } else {
-    StepRamp(is_late ? geometry::Twist2{} : target_, dt);
+    StepRamp(is_late ? geometry::Twist2{} : target_, is_late, dt);
   }
   const Axes before{x_, y_, yaw_};
   if (casters_) {

@@ -252,7 +252,7 @@ TEST(DryRunTest, WithoutImaginationThePlanAloneIsShown) {
   ExpectNothingBegun(world, finish);
   EXPECT_EQ(finish.reason, "planned; nothing was begun");
   EXPECT_THAT(world.imaginations(), IsEmpty());
-  EXPECT_EQ(DriveOf(world.monitor().Steps())->action.arguments.back(), "fast");
+  EXPECT_EQ(DriveOf(world.monitor().Steps())->action.arguments.back(), "slow");
   EXPECT_THAT(FirstDriveOf(world.monitor().Steps())->note,
               HasSubstr("how long it lasts is not known: imagination is off"));
 }

@@ -1,6 +1,8 @@
 #include <gmock/gmock.h>
 
+#include <algorithm>
 #include <map>
+#include <utility>
 
 #include "hires/base/text.h"
 #include "hires/execution/monitor.h"
@@ -107,6 +109,14 @@ TEST(ImaginationTest, WhatIsOtherThanPlannedIsReplacedAllTheSame) {
 
 const char kDrive[] = "move_base_param(premanipulationareanorthtable1, ";
 
+/// The planner's plan has fast; the default is slow.
+Texts CarriedSlowly() {
+  Texts steps = Golden("carry_object");
+  std::replace(steps.begin(), steps.end(), kDrive + std::string("fast)"),
+               kDrive + std::string("slow)"));
+  return steps;
+}
+
 TEST(ToppleTest, TheRecommendedMotionSetIsDriven) {
   auto options = For("carry_object");
   options.imagine = [](const StartImagination&, int) { return Slow(); };
@@ -166,7 +176,7 @@ TEST(ToppleTest, TheDeadlineIsWhenTheDriveIsExpectedAndMovesWithThePlan) {
   EXPECT_NEAR(world.imaginations().at(0).deadline, 1000.05 + 6.9 + 22.8 + 5 + 14.1 + 5 + 10.9 + 6.9,
               1e-3);
   ASSERT_THAT(world.moves(), Not(IsEmpty()));
-  EXPECT_NEAR(world.moves().back().deadline - 1000.0, world.StartOf(kDrive + std::string("fast)")),
+  EXPECT_NEAR(world.moves().back().deadline - 1000.0, world.StartOf(kDrive + std::string("slow)")),
               2.0);
 }
 
@@ -176,7 +186,7 @@ TEST(ToppleTest, WithoutAnAnswerInTimeTheDefaultIsDrivenAndSomebodyIsWarned) {
   options.imagine_delay = 500.0;
   ScriptedWorld world(options);
   ExpectSuccess(&world, "carry_object");
-  EXPECT_THAT(world.Begun(), ElementsAreArray(Golden("carry_object"))) << "with fast";
+  EXPECT_THAT(world.Begun(), ElementsAreArray(CarriedSlowly()));
   EXPECT_THAT(world.warnings(),
               ElementsAreArray({AllOf(HasSubstr("without imagination"),
                                       HasSubstr("there was no answer in time"))}));
@@ -243,7 +253,7 @@ TEST(ToppleTest, NobodyWaitsForEver) {
   };
   ScriptedWorld world(options);
   ExpectSuccess(&world, "carry_object");
-  EXPECT_NEAR(world.StartOf(kDrive + std::string("fast)")), 300.05, 1e-6);
+  EXPECT_NEAR(world.StartOf(kDrive + std::string("slow)")), 300.05, 1e-6);
   EXPECT_GT(world.imaginations().size(), 5u) << "asked again and again";
   EXPECT_THAT(world.warnings(), ElementsAreArray({HasSubstr("no worker is there")}));
 }
@@ -276,7 +286,7 @@ TEST(ToppleTest, WhatImaginationCannotDecideIsNoBanAndTheDefaultIsDriven) {
   options.imagine = [](const StartImagination&, int) { return Undecided(); };
   ScriptedWorld world(options);
   ExpectSuccess(&world, "carry_object");
-  EXPECT_THAT(world.Begun(), ElementsAreArray(Golden("carry_object"))) << "with fast";
+  EXPECT_THAT(world.Begun(), ElementsAreArray(CarriedSlowly()));
   EXPECT_THAT(world.imaginations(), SizeIs(1)) << "asking until it says yes would deceive";
   EXPECT_THAT(world.warnings(), ElementsAreArray({AllOf(HasSubstr("imagination could not decide"),
                                                         HasSubstr("about 90 rollouts decide"))}));
@@ -289,7 +299,7 @@ TEST(ToppleTest, UndecidedCountsAsLateWhereTheDomainSaysWait) {
   options.imagine = [](const StartImagination&, int) { return Undecided(); };
   ScriptedWorld world(options);
   ExpectSuccess(&world, "carry_object");
-  EXPECT_NEAR(world.StartOf(kDrive + std::string("fast)")), 300.05, 1e-6);
+  EXPECT_NEAR(world.StartOf(kDrive + std::string("slow)")), 300.05, 1e-6);
   EXPECT_THAT(world.imaginations(), SizeIs(1));
 }
 
@@ -368,7 +378,7 @@ TEST(ToppleTest, UnderThesisPolicyTheDefaultIsDrivenInEveryCase) {
   };
   ScriptedWorld world(options);
   ExpectSuccess(&world, "carry_object");
-  EXPECT_THAT(world.Begun(), ElementsAreArray(Golden("carry_object")));
+  EXPECT_THAT(world.Begun(), ElementsAreArray(CarriedSlowly()));
   EXPECT_THAT(world.plannings(), SizeIs(1)) << "nothing is planned again";
   EXPECT_THAT(world.warnings(), SizeIs(1));
 }
@@ -378,7 +388,7 @@ TEST(ToppleTest, WithoutImaginationNothingIsAsked) {
   options.monitor.imagination = MonitorParams::ImaginePolicy::kOff;
   ScriptedWorld world(options);
   ExpectSuccess(&world, "carry_object");
-  EXPECT_THAT(world.Begun(), ElementsAreArray(Golden("carry_object")));
+  EXPECT_THAT(world.Begun(), ElementsAreArray(CarriedSlowly()));
   EXPECT_THAT(world.imaginations(), IsEmpty());
   EXPECT_THAT(world.warnings(), IsEmpty());
 }
@@ -492,6 +502,216 @@ TEST(ToppleTest, TheCheapestChangeIsTriedFirst) {
   EXPECT_THAT(world.plannings()[1].tasks, AllOf(HasSubstr("(!place_on_tray rightarm1 peppermill1)"),
                                                 HasSubstr("(unload_tray peppermill1 table1)"),
                                                 Not(HasSubstr("carry_object_on_tray"))));
+}
+
+// ---------------------------------------------------------------------------- defaults and repairs
+
+ImagineAnswered Without(ImagineAnswered::Outcome outcome) {
+  ImagineAnswered answer;
+  answer.outcome = outcome;
+  return answer;
+}
+
+ImagineAnswered Fast() {
+  return Ranked({"move_base_param", {"premanipulationareanorthtable1", "fast"}}, 17.0);
+}
+
+/// The first drive with the tray loaded fails after 5 s, as when what carries it out is killed.
+ScriptedWorld::Options WithDriveLost() {
+  auto options = For("carry_object");
+  options.imagine_delay = 4.0;
+  options.step = [is_first = true](const base::ActionCall& action, int) mutable {
+    StepScript script;
+    if (action.name != "move_base_param" || !std::exchange(is_first, false)) return script;
+    script.result = StepFinished::Result::kUnavailable;
+    script.failure = base::FailureCode::kUnavailable;
+    return script;
+  };
+  return options;
+}
+
+bool AsksForTheRepair(const Command& command) {
+  const auto* asked = std::get_if<StartImagination>(&command);
+  return asked != nullptr && asked->plan == 1;
+}
+
+Texts DrivesOf(const ScriptedWorld& world) {
+  Texts drives;
+  for (const std::string& step : world.Begun()) {
+    if (step.rfind("move_base_param", 0) == 0) drives.push_back(step);
+  }
+  return drives;
+}
+
+TEST(RepairedStepTest, WaitsForTheAnswerToItsNewStart) {
+  auto options = WithDriveLost();
+  options.imagine = [](const StartImagination&, int count) { return count == 0 ? Slow() : Fast(); };
+  ScriptedWorld world(options);
+  ExpectSuccess(&world, "carry_object");
+  EXPECT_THAT(DrivesOf(world), ElementsAreArray({kDrive + std::string("slow)"),
+                                                 kDrive + std::string("fast)")}));
+  ASSERT_THAT(world.imaginations(), SizeIs(2));
+  const double asked = world.imaginations()[1].deadline - options.monitor.late_wait;
+  EXPECT_NEAR(world.StartOf(kDrive + std::string("fast)")), asked - options.start + 4.0, 1e-6);
+  EXPECT_THAT(world.warnings(), SizeIs(1)) << "the repair";
+}
+
+TEST(RepairedStepTest, KeepsTheEarlierChoiceWhereNoAnswerComes) {
+  for (const auto& chosen : {Slow(), Fast()}) {  // whatever the default is
+    auto options = WithDriveLost();
+    options.imagine = [&](const StartImagination&, int count) {
+      return count == 0 ? std::optional<ImagineAnswered>(chosen) : std::nullopt;
+    };
+    ScriptedWorld world(options);
+    ExpectSuccess(&world, "carry_object");
+    const std::string drive = base::ToString(chosen.recommended);
+    EXPECT_THAT(DrivesOf(world), ElementsAreArray({drive, drive})) << LogOf(world);
+    ASSERT_THAT(world.warnings(), SizeIs(2)) << "the repair, and";
+    EXPECT_THAT(world.warnings()[1], HasSubstr("keeps what was imagined for an earlier start"));
+  }
+}
+
+TEST(RepairedStepTest, ShowsTheEarlierChoiceWhileItWaits) {
+  auto options = WithDriveLost();
+  options.imagine = [](const StartImagination&, int count) {
+    return count == 0 ? std::optional<ImagineAnswered>(Slow()) : std::nullopt;
+  };
+  ScriptedWorld world(options);
+  Texts ready;
+  world.When(AsksForTheRepair,
+             [&](ScriptedWorld* w) {
+               w->At(w->now() - 1000.0 + 5.0, [&](ScriptedWorld* later) {
+                 for (const StepStatus& step : later->monitor().Steps()) {
+                   if (step.phase != StepPhase::kReady) continue;
+                   ready.push_back(base::ToString(step.action));
+                 }
+               });
+             });
+  ExpectSuccess(&world, "carry_object");
+  EXPECT_THAT(ready, ElementsAreArray({kDrive + std::string("slow)")}));
+}
+
+TEST(RepairedStepTest, AsksAgainUntilItsWaitIsOverWhereNoWorkerIsThere) {
+  auto options = WithDriveLost();
+  options.imagine_delay = 0.1;
+  options.imagine = [](const StartImagination&, int count) {
+    if (count == 0 || count == 4) return count == 0 ? Slow() : Fast();
+    return Without(ImagineAnswered::Outcome::kNoWorker);
+  };
+  ScriptedWorld world(options);
+  ExpectSuccess(&world, "carry_object");
+  EXPECT_THAT(DrivesOf(world), ElementsAreArray({kDrive + std::string("slow)"),
+                                                 kDrive + std::string("fast)")}));
+}
+
+TEST(RepairedStepTest, TakesTheDefaultWhereTheNewAnswerCannotDecide) {
+  auto options = WithDriveLost();
+  options.imagine = [](const StartImagination&, int count) {
+    return count == 0 ? Fast() : Without(ImagineAnswered::Outcome::kUndecided);
+  };
+  ScriptedWorld world(options);
+  ExpectSuccess(&world, "carry_object");
+  EXPECT_THAT(DrivesOf(world), ElementsAreArray({kDrive + std::string("fast)"),
+                                                 kDrive + std::string("slow)")}));
+}
+
+TEST(RepairedStepTest, TakesTheDefaultUnderThesisPolicy) {
+  auto options = WithDriveLost();
+  options.monitor.imagination = MonitorParams::ImaginePolicy::kThesis;
+  options.monitor.defaults = {{"motion_set", "fast"}};
+  options.imagine = [](const StartImagination&, int count) {
+    return count == 0 ? std::optional<ImagineAnswered>(Slow()) : std::nullopt;
+  };
+  ScriptedWorld world(options);
+  ExpectSuccess(&world, "carry_object");
+  EXPECT_THAT(DrivesOf(world), ElementsAreArray({kDrive + std::string("slow)"),
+                                                 kDrive + std::string("fast)")}));
+}
+
+TEST(RepairedStepTest, ForgetsTheChoiceOfAnotherTask) {
+  auto options = For("carry_object");
+  options.imagine_delay = 4.0;
+  options.imagine = [](const StartImagination&, int count) {
+    return count == 0 ? std::optional<ImagineAnswered>(Fast()) : std::nullopt;
+  };
+  ScriptedWorld world(options);
+  ExpectSuccess(&world, "carry_object");
+  world.Set({{"on", {"peppermill1", "placingareawestlefttable1"}}},
+            {{"on", {"peppermill1", "placingareaeastrightcounter1"}}});
+  world.Observe();
+  ExpectSuccess(&world, "carry_object");
+  EXPECT_THAT(DrivesOf(world), ElementsAreArray({kDrive + std::string("fast)"),
+                                                 kDrive + std::string("slow)")}));
+}
+
+TEST(LateAnswerTest, ChoiceIsDroppedWhenWhatItRestsOnChanges) {
+  auto options = For("carry_object");
+  options.imagine_delay = 4.0;
+  options.imagine = [](const StartImagination&, int count) {
+    ImagineAnswered answer = Fast();
+    answer.depends_on = {"chair1"};
+    return count == 0 ? std::optional<ImagineAnswered>(answer) : std::nullopt;
+  };
+  ScriptedWorld world(options);
+  world.At(10.0, [](ScriptedWorld* w) { w->Post(GeometryChanged{{"chair1"}}); });
+  ExpectSuccess(&world, "carry_object");
+  EXPECT_THAT(DrivesOf(world), ElementsAreArray({kDrive + std::string("slow)")}));
+}
+
+TEST(LateAnswerTest, StepAskedAtItsTurnWaitsForLateWaitAtMost) {
+  auto options = WithDriveLost();
+  options.monitor.late_wait = 12.0;
+  options.imagine = [](const StartImagination&, int count) {
+    return count == 0 ? std::optional<ImagineAnswered>(Fast()) : std::nullopt;
+  };
+  ScriptedWorld world(options);
+  double asked = 0.0, begun = 0.0;
+  world.When(AsksForTheRepair,
+             [&](ScriptedWorld* w) { asked = w->now(); });
+  world.When([&](const Command& c) { return asked > 0.0 && std::get_if<StartStep>(&c); },
+             [&](ScriptedWorld* w) { begun = w->now(); });
+  ExpectSuccess(&world, "carry_object");
+  EXPECT_NEAR(begun - asked, 12.0 + options.monitor.answer_grace, 1e-6);
+}
+
+/// What is driven without any answer.
+Texts UnimaginedDrives(const MonitorParams& monitor, const planning::OperatorData& data) {
+  auto options = For("carry_object");
+  options.monitor = monitor;
+  options.operators = &data;
+  options.imagine = [](const StartImagination&, int) { return std::nullopt; };
+  ScriptedWorld world(options);
+  ExpectSuccess(&world, "carry_object");
+  return DrivesOf(world);
+}
+
+TEST(DefaultTest, MostCautiousMotionSetIsDrivenWhereTheDomainNamesNone) {
+  planning::OperatorData data = test_support::RestaurantData();
+  data.operators.at("move_base_param").imagine->defaults.clear();
+  MonitorParams monitor;
+  monitor.motion_sets = {"crawl", "slow", "fast"};  // no alternative is called crawl
+  EXPECT_THAT(UnimaginedDrives(monitor, data), ElementsAreArray({kDrive + std::string("slow)")}));
+  monitor.imagination = MonitorParams::ImaginePolicy::kOff;
+  EXPECT_THAT(UnimaginedDrives(monitor, data), ElementsAreArray({kDrive + std::string("slow)")}));
+}
+
+TEST(DefaultTest, ConfiguredDefaultOverridesTheDomains) {
+  MonitorParams monitor;
+  monitor.defaults = {{"motion_set", "fast"}};
+  EXPECT_THAT(UnimaginedDrives(monitor, test_support::RestaurantData()),
+              ElementsAreArray({kDrive + std::string("fast)")}));
+}
+
+TEST(DefaultTest, ConfiguredDefaultThatIsNoAlternativeIsWarnedOf) {
+  auto options = For("carry_object");
+  options.monitor.defaults = {{"motion_set", "fats"}};
+  options.monitor.imagination = MonitorParams::ImaginePolicy::kOff;
+  ScriptedWorld world(options);
+  ExpectSuccess(&world, "carry_object");
+  EXPECT_THAT(DrivesOf(world), ElementsAreArray({kDrive + std::string("slow)")}));
+  EXPECT_THAT(world.warnings(), ElementsAreArray({AllOf(
+                                    HasSubstr("motion_set=fats is not among the alternatives"),
+                                    HasSubstr("slow is used"))}));
 }
 
 }  // namespace

@@ -152,6 +152,42 @@ TEST(BrakedTest, SpeedFallsByTheAccelerationAndKeepsItsDirection) {
   EXPECT_NEAR(V.wz, -0.68, 1e-12);
 }
 
+TEST(BrakedTest, SpeedFallsByTheDecelerationWhereThereIsOne) {
+  robot::MotionSet limits = kFast;
+  limits.max_linear_deceleration = 0.5;
+  limits.max_angular_deceleration = 0.8;
+  const geometry::Twist2 braked = Braked({0.3, 0.0, -0.5}, limits, 0.1);
+  EXPECT_DOUBLE_EQ(braked.vx, 0.25);
+  EXPECT_DOUBLE_EQ(braked.wz, -0.42);
+}
+
+TEST(TimeToCoverTest, IsThePeriodAndHalfTheTimeOfBraking) {
+  robot::MotionSet limits = kFast;
+  limits.max_linear_deceleration = 0.5;
+  // 0.5 m/s for 0.6 s is 0.05 m in the period and v^2 / (2 a) = 0.25 m.
+  EXPECT_DOUBLE_EQ(TimeToCover({0.5, 0.0, 0.0}, limits, 0.1), 0.6);
+  limits.max_angular_deceleration = 0.25;
+  EXPECT_DOUBLE_EQ(TimeToCover({0.5, 0.0, 0.5}, limits, 0.1), 1.1);
+}
+
+TEST(ReachableVelocitiesTest, DecelerationBoundsWhatIsSlower) {
+  const DwaParams params;
+  robot::MotionSet limits = kFast;
+  limits.max_linear_deceleration = 0.5;
+  limits.max_angular_deceleration = 0.8;
+  double slowest = 1.0, fastest = 0.0, least = 1.0, most = 0.0;
+  for (const geometry::Twist2& V : ReachableVelocities(params, limits, {0.3, 0.0, 0.5})) {
+    slowest = std::min(slowest, V.vx);
+    fastest = std::max(fastest, V.vx);
+    least = std::min(least, V.wz);
+    most = std::max(most, V.wz);
+  }
+  EXPECT_DOUBLE_EQ(slowest, 0.3 - 0.5 * params.control_period);
+  EXPECT_DOUBLE_EQ(fastest, std::min(0.55, 0.3 + 2.5 * params.control_period));
+  EXPECT_DOUBLE_EQ(least, 0.5 - 0.8 * params.control_period);
+  EXPECT_DOUBLE_EQ(most, 0.5 + 3.2 * params.control_period);
+}
+
 TEST(BrakedTest, ItEndsAtStandstill) {
   const geometry::Twist2 V = Braked({0.1, 0.1, 0.1}, kFast, 0.1);
   EXPECT_EQ(V.vx, 0.0);

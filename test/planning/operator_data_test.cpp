@@ -238,8 +238,14 @@ INSTANTIATE_TEST_SUITE_P(
                    "[speed]",
                    {"operators.drive.imagine.parameters", "argument 'speed' is unknown", "set"}},
         BadSidecar{"ParameterTwice", "[set]", "[set, Set]", {"'set' stands twice"}},
-        BadSidecar{
-            "NoDefault", "{set: Fast}", "{}", {"operators.drive.imagine.default.set is missing"}},
+        BadSidecar{"NoDefault",
+                   "[set], default: {set: Fast}",
+                   "[to], default: {}",
+                   {"operators.drive.imagine.default.to is missing"}},
+        BadSidecar{"NoDefaults",
+                   "[set], default: {set: Fast}",
+                   "[set, to]",
+                   {"operators.drive.imagine.default is missing"}},
         BadSidecar{"EmptyDefault",
                    "{set: Fast}",
                    "{set: \"\"}",
@@ -277,6 +283,15 @@ INSTANTIATE_TEST_SUITE_P(
                    "[wheels]",
                    {"operators.drive.resources is a list, wanted a map"}}),
     [](const auto& test) { return test.param.what; });
+
+TEST(OperatorDataTest, DefaultOfAMotionSetMayBeLeftOut) {
+  EXPECT_FALSE(LacksDefaults(ReadSmall()));
+  for (const char* text : {"default: {}, ", ""}) {
+    const OperatorData data = ReadSmall(Changed("default: {set: Fast}, ", text));
+    EXPECT_THAT(data.operators.at("drive").imagine->defaults, IsEmpty());
+    EXPECT_TRUE(LacksDefaults(data));
+  }
+}
 
 TEST(OperatorDataTest, AFileIsReadAndNamedInErrors) {
   hires::test_support::TemporaryFolder folder;

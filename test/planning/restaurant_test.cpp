@@ -667,12 +667,21 @@ TEST(RestaurantSidecarTest, EveryActionThatIsImaginedHasItsDefaults) {
   }
 }
 
-TEST(RestaurantSidecarTest, TheDefaultMotionSetIsTheRobots) {
+TEST(RestaurantSidecarTest, DefaultOfAnImaginedDriveIsTheMotionSetWithTheLowestLimits) {
   const YAML::Node robot = YAML::LoadFile(kRoot + "/config/robots/pr2.yaml");
-  const auto set = robot["default_motion_set"].as<std::string>();
   const ImagineData& imagine = EntryOf(Sidecar(), "move_base_param").imagine.value();
   EXPECT_THAT(imagine.parameters, ElementsAre("motion_set"));
-  EXPECT_EQ(imagine.defaults.at("motion_set"), set);
+  const YAML::Node sets = robot["motion_sets"], lowest = sets[imagine.defaults.at("motion_set")];
+  for (const auto& set : sets) {
+    for (const auto& limit : lowest) {
+      EXPECT_LE(limit.second.as<double>(), set.second[limit.first.as<std::string>()].as<double>());
+    }
+  }
+}
+
+TEST(RestaurantSidecarTest, DriveWithoutMotionSetTakesTheRobotsDefault) {
+  const YAML::Node robot = YAML::LoadFile(kRoot + "/config/robots/pr2.yaml");
+  const auto set = robot["default_motion_set"].as<std::string>();
   EXPECT_EQ(EntryOf(Sidecar(), "move_base").leg.value().fixed_motion_set, set);
 }
 

@@ -107,6 +107,52 @@ class RobotProfileFile : public ::testing::Test {
   test_support::TemporaryFolder folder_;
 };
 
+constexpr char kLastLimit[] = "max_angular_acceleration: 1.3}";
+
+TEST_F(RobotProfileFile, DecelerationsAreReadAndAreThoseOfTheAccelerationElse) {
+  const Robot plain = LoadRobot(Write(kProfile));
+  EXPECT_EQ(plain.profile.motion_sets.at("brisk").linear_deceleration(), 1.2);
+  EXPECT_EQ(plain.profile.base_controller.limits.angular_deceleration(), 4.5);
+  EXPECT_EQ(plain.profile.base_controller.emergency_deceleration, 0.0);
+  const Robot robot = LoadRobot(WriteWith(kLastLimit,
+                                          "max_angular_acceleration: 1.3, "
+                                          "max_linear_deceleration: 0.4, "
+                                          "max_angular_deceleration: 0.6}"));
+  EXPECT_EQ(robot.profile.motion_sets.at("brisk").linear_deceleration(), 0.4);
+  EXPECT_EQ(robot.profile.motion_sets.at("brisk").angular_deceleration(), 0.6);
+  EXPECT_NE(robot.profile.hash, plain.profile.hash);
+  const Robot hard = LoadRobot(
+      WriteWith("at_timeout: ramp", "at_timeout: ramp\n  emergency_deceleration: 5.0"));
+  EXPECT_EQ(hard.profile.base_controller.emergency_deceleration, 5.0);
+  EXPECT_NE(hard.profile.hash, plain.profile.hash);
+}
+
+TEST_F(RobotProfileFile, DecelerationsOfNavigationAreReadWhereThereAreNoneInTheProfile) {
+  folder_.Write("nav2.yaml",
+                "controller_server:\n  ros__parameters:\n"
+                "    FollowPath: {decel_lim_x: -2.5, decel_lim_theta: -3.2, acc_lim_x: 2.5}\n"
+                "velocity_smoother:\n  ros__parameters: {max_decel: [-0.5, 0.0, -4.0]}\n");
+  const std::string profile = std::string(kProfile) + "navigation: nav2.yaml\n";
+  const MotionSet set = LoadRobot(Write(profile)).profile.motion_sets.at("brisk");
+  EXPECT_EQ(set.max_linear_deceleration, 0.5) << "the smaller one";
+  EXPECT_EQ(set.max_angular_deceleration, 3.2);
+  folder_.Write("dwa.yaml", "DWAPlannerROS: {acc_lim_x: 2.5, acc_lim_theta: 3.2}\n");
+  const Robot dwa = LoadRobot(Write(std::string(kProfile) + "navigation: dwa.yaml\n"));
+  EXPECT_EQ(dwa.profile.hash, LoadRobot(Write(kProfile)).profile.hash) << "DWA defines none";
+}
+
+TEST_F(RobotProfileFile, BadDecelerationsAreRefused) {
+  ExpectRefused(kLastLimit, "max_angular_acceleration: 1.3, max_linear_deceleration: -1}",
+                {"motion_sets.Brisk.max_linear_deceleration is '-1'", "between"});
+  ExpectRefused("at_timeout: ramp", "at_timeout: stop\n  emergency_deceleration: 5.0",
+                {"emergency_deceleration", "at_timeout: ramp"});
+  folder_.Write("bad.yaml", "a:\n  decel_lim_x: fast\n  decel_lim_theta: 0\n");
+  ExpectRefused("joints: {post: 0.4}", "joints: {post: 0.4}\nnavigation: bad.yaml",
+                {"bad.yaml: decel_lim_x in line 2 is 'fast'", "other than 0"});
+  ExpectRefused("joints: {post: 0.4}", "joints: {post: 0.4}\nnavigation: gone.yaml",
+                {"gone.yaml", "cannot be read"});
+}
+
 TEST_F(RobotProfileFile, EveryFieldIsRead) {
   const Robot robot = LoadRobot(Write(kProfile));
   const RobotProfile& profile = robot.profile;

@@ -154,13 +154,13 @@ class ExecutionMonitorTest(unittest.TestCase):
         self.require(self.achieve(CARRY, imagination='off'), self.codes.SUCCEEDED)
         self.assertNotIn('imagine move_base_param', self.system.log())
         self.assertEqual(self.system.done('move_base_param'),
-                         ['move_base_param(%s, fast)' % NORTH])
+                         ['move_base_param(%s, slow)' % NORTH])
 
     def test_the_policy_of_the_thesis_takes_the_default_where_all_fail(self):
         self.system.behave('imagine', answer='all_failed')
         self.require(self.achieve(CARRY, imagination='thesis'), self.codes.SUCCEEDED)
         self.assertEqual(self.system.done('move_base_param'),
-                         ['move_base_param(%s, fast)' % NORTH])
+                         ['move_base_param(%s, slow)' % NORTH])
 
     # Preempting.
 
@@ -288,7 +288,7 @@ class ExecutionMonitorTest(unittest.TestCase):
         self.addCleanup(self.system.start_fake, 'imagination')
         task, result = self.carry_when_imagination_is_answered()
         self.assertEqual(self.system.done('move_base_param'),
-                         ['move_base_param(%s, fast)' % NORTH])
+                         ['move_base_param(%s, slow)' % NORTH])
         self.assertEqual(result.imaginations[0].outcome, 'unavailable')
         self.assertTrue(task.warnings())
 

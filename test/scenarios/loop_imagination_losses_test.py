@@ -10,7 +10,6 @@ sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), 'sup
 from loop_case import AT_COUNTER, MUG, LoopCase, names  # noqa: E402
 from test_run import run_test  # noqa: E402
 
-# A mug stands firmly: that it is driven fast without imagination does no harm.
 THERE = 'carry_object_on_tray mug1 counter1 table1'
 BACK = 'carry_object_on_tray mug1 table1 counter1'
 
@@ -23,7 +22,7 @@ class ImaginationLossesTest(LoopCase):
 
     def assert_default_was_driven(self, task, result, *words):
         drive = self.drive_of(result)
-        self.assertEqual(drive.action.arguments[-1], 'fast')
+        self.assertEqual(drive.action.arguments[-1], 'slow')
         self.assertTrue(drive.note.startswith('not imagined'), drive.note)
         self.warned(task, names(drive.action), 'without imagination', *words)
 

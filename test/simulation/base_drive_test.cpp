@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <optional>
 #include <vector>
@@ -74,6 +75,87 @@ TEST(BaseDriveTest, TwoDrivenWheelsIgnoreSidewaysCommands) {
   for (int i = 0; i < 1000; ++i) {
     ASSERT_TRUE(SameBits(ordered.Step(), forward.Step())) << i;
     ASSERT_EQ(ordered.drive.motion().V_B.vy, 0.0);
+  }
+}
+
+/// [m] From 0.8 m/s until it stands, after `stop`.
+double StoppingDistance(Drive* drive, const std::function<void(Drive*)>& stop) {
+  drive->Send({0.8, 0.0, 0.0});
+  drive->StepFor(2.0);
+  EXPECT_DOUBLE_EQ(drive->drive.motion().V_B.vx, 0.8);
+  const double begin = drive->drive.motion().X_MB.x;
+  stop(drive);
+  drive->StepFor(10.0);
+  EXPECT_DOUBLE_EQ(drive->drive.motion().V_B.vx, 0.0);
+  return drive->drive.motion().X_MB.x - begin;
+}
+
+void SendStop(Drive* drive) { drive->Send({}); }
+
+/// v^2 / (2 a) in steps: the velocity of each step is the one at its end.
+double ClosedForm(double deceleration) {
+  return 0.8 * 0.8 / (2.0 * deceleration) - 0.5 * 0.8 * kDt;
+}
+
+TEST(BaseDriveTest, StoppingDistanceIsThatOfTheDeceleration) {
+  for (const double deceleration : {0.5, 2.0, 5.0}) {
+    robot::BaseControllerParams params = Ideal();
+    params.limits.max_linear_deceleration = deceleration;
+    Drive drive(params);
+    EXPECT_NEAR(StoppingDistance(&drive, SendStop), ClosedForm(deceleration), 1e-6);
+  }
+}
+
+TEST(BaseDriveTest, StoppingAngleIsThatOfTheAngularDeceleration) {
+  robot::BaseControllerParams params = Ideal();
+  params.limits.max_angular_deceleration = 0.5;
+  Drive drive(params);
+  drive.Send({0.0, 0.0, 0.6});
+  drive.StepFor(1.0);
+  const double begin = drive.drive.motion().X_MB.yaw;
+  drive.Send({});
+  drive.StepFor(3.0);
+  const double angle = 0.6 * 0.6 / (2.0 * 0.5) - 0.5 * 0.6 * kDt;
+  EXPECT_NEAR(drive.drive.motion().X_MB.yaw - begin, angle, 1e-6);
+}
+
+TEST(BaseDriveTest, EmergencyDecelerationStopsAfterATimeoutAlone) {
+  robot::BaseControllerParams params = Ideal();
+  params.limits.max_linear_deceleration = 0.5;
+  params.emergency_deceleration = 4.0;
+  Drive ordered(params);
+  EXPECT_NEAR(StoppingDistance(&ordered, SendStop), ClosedForm(0.5), 1e-6);
+  params.command_timeout = 2.0;  // as long as it drives; then one more step
+  Drive late(params);
+  EXPECT_NEAR(StoppingDistance(&late, [](Drive*) {}), ClosedForm(4.0), 0.8 * 2.0 * kDt);
+}
+
+TEST(BaseDriveTest, DecelerationDoesNotChangeHowItGainsSpeed) {
+  robot::BaseControllerParams params = Ideal();
+  Drive plain(params);
+  params.limits.max_linear_deceleration = params.limits.max_angular_deceleration = 0.3;
+  params.emergency_deceleration = 0.2;
+  Drive gentle(params);
+  for (Drive* drive : {&plain, &gentle}) drive->Send({0.9, 0.0, 0.4});
+  for (int i = 0; i < 1000; ++i) ASSERT_TRUE(SameBits(plain.Step(), gentle.Step())) << i;
+}
+
+TEST(BaseDriveTest, DecelerationLikeTheAccelerationGivesTheSameBits) {
+  robot::BaseControllerParams params = Ideal();
+  params.command_timeout = 0.5;
+  params.max_linear_jerk = 8.0;
+  Drive plain(params);
+  params.limits.max_linear_deceleration = params.limits.max_linear_acceleration;
+  params.limits.max_angular_deceleration = params.limits.max_angular_acceleration;
+  Drive same(params);
+  base::Rng rng(3);
+  for (int i = 0; i < 3000; ++i) {
+    if (i % 300 == 0 && i < 2000) {
+      const Twist2 velocity{rng.Uniform(-1.0, 1.0), rng.Uniform(-1.0, 1.0), rng.Uniform(-2.0, 2.0)};
+      plain.Send(velocity);
+      same.Send(velocity);
+    }
+    ASSERT_TRUE(SameBits(plain.Step(), same.Step())) << i;
   }
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -146,6 +147,12 @@ using Command = std::variant<StartPlanning, CancelPlanning, StartStep, StopStep,
 struct MonitorParams {
   enum class ImaginePolicy { kDomain, kThesis, kOff };
   ImaginePolicy imagination{ImaginePolicy::kDomain};  ///< kOff: `!imagine` steps take the default
+  /// Values of imagined parameters that replace the defaults of the domain, by parameter, in lower
+  /// case.
+  std::map<std::string, std::string> defaults;
+  /// Motion sets of the robot, lowest limits first. Where the domain has no default among the
+  /// alternatives, the first of these that is one is used.
+  std::vector<std::string> motion_sets;
   /// Plans and imagines from the state that is, repairs the plan where all alternatives of a step
   /// are imagined to fail, and ends instead of beginning a step. Then those steps are imagined,
   /// too, that can be and of which the operators' data do not say how long they are expected to
@@ -159,6 +166,9 @@ struct MonitorParams {
   double planning_timeout{30.0};   ///< [s]
   double arrival_margin{0.0};      ///< [s] before the latest start: the imagination's deadline
   double answer_grace{0.5};        ///< [s] after that deadline in which its answer still counts
+  /// [s] An imagined step waits at least so long for the answer to its question, also beyond its
+  /// latest start, unless a bound of the plan requires it to begin earlier.
+  double late_wait{30.0};
   double max_wait{300.0};          ///< [s] at most for an answer where the domain says `wait`
   double retry_period{5.0};        ///< [s] until imagination is asked again in vain, then
   double break_delay{0.5};         ///< [s] that an observation must contradict before it counts

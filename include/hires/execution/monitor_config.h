@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -29,6 +30,7 @@ struct MonitorConfig {
   std::string domain;                 ///< path
   std::string operators;              ///< path of the domain's sidecar
   std::vector<std::string> ontology;  ///< paths
+  std::string robot;  ///< path; its motion sets order defaults that the sidecar leaves out
   MonitorParams monitor;
   ImaginingParams imagining;
   ServerParams servers;
@@ -41,6 +43,12 @@ struct MonitorConfig {
 base::Bound<std::string> ImaginePolicyWord();
 /// "domain", "thesis", "off".  @throws base::ConfigError that names these.
 MonitorParams::ImaginePolicy ReadImaginePolicy(const std::string& word);
+
+/// Reads "motion_set=fast,spot=any" for MonitorParams::defaults; "" is none.
+/// @throws base::ConfigError naming each entry that is not PARAMETER=VALUE, or whose parameter no
+/// operator of the domain imagines.
+std::map<std::string, std::string> ReadDefaults(const std::string& text,
+                                                const planning::OperatorData& operators);
 
 /// Relative paths count from the folder of the file.
 /// @throws base::ConfigError naming file and key.

@@ -30,7 +30,9 @@ struct ImagineData {
   /// Arguments that imagination chooses, without their `?`. None: it only tells whether the step
   /// will succeed as it is planned.
   std::vector<std::string> parameters;
-  std::map<std::string, std::string> defaults;  ///< value of each parameter, in lower case
+  /// Value of each parameter, in lower case. That of a motion set may be missing: then it is the
+  /// robot's most cautious one among the alternatives.
+  std::map<std::string, std::string> defaults;
   OnLate on_late{OnLate::kDefault};
   /// Share of successes that the lower end of an alternative's interval must reach to be
   /// recommended, in (0, 1); none: imagination's own default.
@@ -89,6 +91,9 @@ OperatorData ReadOperatorData(const std::string& yaml, const std::string& source
 /// What the sidecar says of the order of subtasks, and nothing else of it: kept, where it says
 /// nothing.  @throws ConfigError naming file and key; also where HDDL's order is not to be kept.
 SubtaskOrder LoadSubtaskOrder(const std::string& path, Domain::Language language);
+
+/// Whether an operator leaves out the default of a motion set, so that the robot's are needed.
+bool LacksDefaults(const OperatorData& data);
 
 /// The entry of an operator, named with its `!` or without.
 /// @throws ConfigError with the nearest names if there is none.

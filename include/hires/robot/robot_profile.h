@@ -20,6 +20,15 @@ struct MotionSet {
   double max_angular_velocity{1.0};      ///< [rad/s]
   double max_linear_acceleration{2.5};   ///< [m/s^2]
   double max_angular_acceleration{3.2};  ///< [rad/s^2]
+  double max_linear_deceleration{0.0};   ///< [m/s^2]; 0: as the acceleration
+  double max_angular_deceleration{0.0};  ///< [rad/s^2]; 0: as the acceleration
+
+  double linear_deceleration() const {
+    return max_linear_deceleration > 0.0 ? max_linear_deceleration : max_linear_acceleration;
+  }
+  double angular_deceleration() const {
+    return max_angular_deceleration > 0.0 ? max_angular_deceleration : max_angular_acceleration;
+  }
 };
 
 /// Where a base can drive to without turning first. Of one that cannot drive sideways the base_link
@@ -40,6 +49,7 @@ struct BaseControllerParams {
   double max_linear_jerk{0.0};           ///< [m/s^3]; 0 means that acceleration may jump
   double command_timeout{0.2};           ///< [s] without a command after which it brakes to a stop
   bool stops_at_timeout{false};          ///< then at once, without the ramp of a command
+  double emergency_deceleration{0.0};    ///< [m/s^2] of the ramp after a timeout; 0: the limits'
   double command_lag{0.0};               ///< [s] from a command's sending to its effect
   /// Empty: the base follows by the velocity loop below.
   std::optional<CasterParams> casters;
@@ -103,7 +113,8 @@ std::optional<double> LaserHeight(const Robot& robot);
 /// Reads the profile and the URDF that it names, which must be there, and so must, where there are
 /// several `motion_sets`, `default_motion_set`. Of the others, base_link, tray_link, object_on_tray
 /// and base_controller.drive are derived as below where they are left out, its limits are the
-/// largest of the motion sets, and an empty footprint is the hull from above, joints in the driving
+/// largest of the motion sets, those of `navigation` (a parameter file of Nav2) are their
+/// decelerations, and an empty footprint is the hull from above, joints in the driving
 /// posture.
 /// @throws base::ConfigError naming file and key; all missing keys at once.
 Robot LoadRobot(const std::string& profile_path);

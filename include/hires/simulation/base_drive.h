@@ -68,7 +68,7 @@ class BaseDrive {
   };
   void Receive(double time);
   void StandAtOnce();
-  void StepRamp(const geometry::Twist2& target, double dt);
+  void StepRamp(const geometry::Twist2& target, bool is_late, double dt);
   void StepAxis(Axis* axis, double grip, double dt) const;
   void StepCasters(double grip, double traction, double dt);
   void KeepToArc(const Axis& yaw_before, double dt);

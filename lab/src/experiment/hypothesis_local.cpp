@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "hires/base/failure.h"
+#include "lab/src/dissertation.h"
 
 namespace hires::lab {
 namespace {
@@ -12,6 +13,7 @@ loop::LoopOrder LoopOrderOf(const HypothesisOrder& order,
   loop::LoopOrder play;
   play.scenario = package_folder + "/config/scenarios/" + order.scenario + ".yaml";
   play.imagination = order.imagines ? "" : "off";
+  play.defaults = kDissertationDefaults;
   play.seed = order.seed;
   play.time_limit = order.goal.time_limit;
   play.truth = truth;

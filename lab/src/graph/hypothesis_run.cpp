@@ -10,6 +10,7 @@
 #include "hires/base/process.h"
 #include "hires/base/run_processes.h"
 #include "hires/base/text.h"
+#include "lab/src/dissertation.h"
 #include "lab/src/experiment/hypothesis_play.h"
 #include "reports/text/report_json.h"
 #include "sim_robot/scenario.h"
@@ -37,6 +38,7 @@ std::vector<std::string> LaunchArguments(const HypothesisOrder& order,
   return {"scenario:=" + order.scenario,
           "knowledge:=" + hires::base::Join(scenario.knowledge, " "),
           fmt::format("imagination:={}", order.imagines),
+          fmt::format("default:={}", lab::kDissertationDefaults),
           fmt::format("workers:={}", order.workers),
           fmt::format("pace:={}", order.pace),
           fmt::format("seed:={}", order.seed),

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "lab/src/decision/decision_drive.h"
+#include "lab/src/dissertation.h"
 #include "lab/src/verbs/experiment_command.h"
 #include "hires/base/error.h"
 #include "base/parallel.h"
@@ -25,10 +26,6 @@
 
 namespace hires::lab {
 namespace {
-
-
-constexpr char kOperator[] = "move_base_param";
-constexpr char kParameter[] = "motion_set";
 
 std::string JournalPath(const DecisionOptions& options) {
   if (!options.journal.empty()) return options.journal;
@@ -49,16 +46,6 @@ std::vector<std::string> ArmsOf(const DecisionOptions& options) {
   return arms;
 }
 
-/// What the domain has its robot drive with when imagination has no answer.
-std::string DefaultMotionSet(const planning::OperatorData& operators) {
-  const auto& imagine = planning::EntryOf(operators, kOperator).imagine;
-  if (imagine && imagine->defaults.count(kParameter) > 0) return imagine->defaults.at(kParameter);
-  throw base::ConfigError(
-      fmt::format("operator '{}' has no default for '{}'; name one in the "
-                  "domain's sidecar",
-                  kOperator, kParameter));
-}
-
 /// Everything that all tasks share.
 struct DecisionStage {
   DecisionStage(const DecisionOptions& options, const std::string& package_folder)
@@ -69,7 +56,7 @@ struct DecisionStage {
     setting.seed = options.seed;
     setting.arms = ArmsOf(options);
     setting.files = reports::ConfigurationHash(package_folder);
-    setting.default_motion_set = DefaultMotionSet(setup.operators());
+    setting.default_motion_set = kDissertationMotionSet;
   }
 
   DecisionConfig config;

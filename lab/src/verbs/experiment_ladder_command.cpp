@@ -1,3 +1,4 @@
+#include "lab/src/dissertation.h"
 #include "lab/src/verbs/experiment_ladder_command.h"
 
 #include <CLI/CLI.hpp>
@@ -31,6 +32,7 @@ std::optional<double> PlayTopple(const loop::LoopSetup& setup, const std::string
   loop::LoopOrder order;
   order.scenario = package_folder + "/config/scenarios/topple.yaml";
   order.seed = seed;
+  order.defaults = kDissertationDefaults;
   const loop::LoopRun run = loop::PlayTask(setup, order, {}, cancelled);
   if (cancelled && cancelled()) return std::nullopt;
   return run.virtual_seconds;

@@ -18,6 +18,7 @@
 #include "hires/imagination/imagine_answer.h"
 #include "hires/knowledge/state_view.h"
 #include "hires/planning/request.h"
+#include "hires/robot/load_robot.h"
 #include "hires/ros/execution/step_messages.h"
 #include "hires/ros/names/robot_topics.h"
 #include "hires/ros/names/topic_names.h"
@@ -25,6 +26,7 @@
 #include "hires/ros/values/action_messages.h"
 #include "hires/ros/values/failure_messages.h"
 #include "nodes/execution_monitor/execution_messages.h"
+#include "robot/profile/motion_set_order.h"
 
 namespace hires_ros {
 namespace {
@@ -68,7 +70,8 @@ bool LooksSame(const hires::AchieveFeedback& a, const hires::AchieveFeedback& b)
 }  // namespace
 
 execution::MonitorConfig LoadExecutionMonitorParams() {
-  RejectUnknownPrivate({"config", "domain", "operators", "imagination", "seed", "dry_run"});
+  RejectUnknownPrivate({"config", "domain", "operators", "robot", "default", "imagination", "seed",
+                         "dry_run"});
   const auto path = PrivateText("config");
   execution::MonitorConfig config = execution::ReadMonitorConfig(
       path && !path->empty() ? *path
@@ -77,6 +80,8 @@ execution::MonitorConfig LoadExecutionMonitorParams() {
   if (domain && !domain->empty()) config.domain = *domain;
   const auto operators = PrivateText("operators");
   if (operators && !operators->empty()) config.operators = *operators;
+  const auto robot = PrivateText("robot");
+  if (robot && !robot->empty()) config.robot = *robot;
   if (const auto word = PrivateWord("imagination", execution::ImaginePolicyWord()))
     config.monitor.imagination = execution::ReadImaginePolicy(*word);
   config.monitor.dry_run = PrivateBool("dry_run").value_or(config.monitor.dry_run);
@@ -95,6 +100,19 @@ ExecutionKnowledge LoadExecutionKnowledge(const execution::MonitorConfig& config
   knowledge.ontology =
       std::make_shared<const knowledge::Ontology>(knowledge::Ontology::FromFiles(config.ontology));
   return knowledge;
+}
+
+void LoadDefaults(const planning::OperatorData& operators, execution::MonitorConfig* config) {
+  config->monitor.defaults =
+      execution::ReadDefaults(PrivateText("default").value_or(""), operators);
+  if (!LacksDefaults(operators)) return;
+  if (config->robot.empty()) {
+    throw ConfigError(config->operators +
+                      ": an imagined motion set has no default and there is no robot profile to "
+                      "find the most cautious one; add `default` there, or set ~robot");
+  }
+  const auto robot = hires::robot::LoadAnyRobot(config->robot);
+  config->monitor.motion_sets = hires::robot::MostCautiousFirst(robot.profile.motion_sets);
 }
 
 ExecutionMonitorNode::ExecutionMonitorNode(const execution::MonitorConfig& config,

@@ -35,8 +35,8 @@
 
 namespace hires_ros {
 
-/// The file in ~config (config/execution_monitor.yaml where there is none); ~domain, ~operators
-/// (paths), ~imagination, ~seed and ~dry_run win over it.  @throws hires::base::ConfigError.
+/// The file in ~config (config/execution_monitor.yaml where there is none); ~domain, ~operators,
+/// ~robot (paths), ~imagination, ~seed and ~dry_run override it.  @throws hires::base::ConfigError.
 hires::execution::MonitorConfig LoadExecutionMonitorParams();
 
 /// What the monitor knows before it is asked; constant.
@@ -47,6 +47,11 @@ struct ExecutionKnowledge {
 };
 /// @throws hires::base::ConfigError naming file, line and column.
 ExecutionKnowledge LoadExecutionKnowledge(const hires::execution::MonitorConfig& config);
+
+/// The defaults of imagined parameters: ~default ("motion_set=fast") and, where the domain leaves one
+/// out, the motion sets of the robot.  @throws hires::base::ConfigError.
+void LoadDefaults(const hires::planning::OperatorData& operators,
+                  hires::execution::MonitorConfig* config);
 
 /// Answers the action `achieve`: carries the commands of execution::Monitor to planner, translator,
 /// imagination client, middle layer and Blackboard, and their answers back. The monitor has one

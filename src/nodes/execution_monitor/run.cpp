@@ -9,8 +9,9 @@ namespace hires_ros {
 
 int RunExecutionMonitorNode(int argc, char** argv) {
   return RunNode("execution_monitor", argc, argv, [](ros::NodeHandle* nh) {
-    const auto config = LoadExecutionMonitorParams();
+    auto config = LoadExecutionMonitorParams();
     const auto knowledge = LoadExecutionKnowledge(config);
+    LoadDefaults(knowledge.operators, &config);
     ExecutionMonitorNode node(config, knowledge, nh);
     ros::spin();
   });

@@ -198,10 +198,16 @@ std::vector<std::string> ReadParameters(ParamReader in, const OperatorEntry& ent
   return parameters;
 }
 
-std::map<std::string, std::string> ReadDefaults(ParamReader in,
+bool IsMotionSet(const OperatorEntry& entry, const std::string& argument) {
+  return argument == "motion_set" || (entry.leg && entry.leg->motion_set == argument);
+}
+
+/// The default of a motion set may be left out.
+std::map<std::string, std::string> ReadDefaults(ParamReader in, const OperatorEntry& entry,
                                                 const std::vector<std::string>& parameters) {
   std::map<std::string, std::string> defaults;
   for (const std::string& name : parameters) {
+    if (IsMotionSet(entry, name) && !in.Has(name)) continue;
     defaults[name] = base::ToLower(in.GetString(name));
     if (defaults[name].empty())
       in.Fail(name, "wanted the value that stands in while none is known");
@@ -212,7 +218,12 @@ std::map<std::string, std::string> ReadDefaults(ParamReader in,
 ImagineData ReadImagine(ParamReader in, const OperatorEntry& entry) {
   ImagineData imagine;
   imagine.parameters = ReadParameters(in, entry);
-  imagine.defaults = ReadDefaults(in.Sub("default"), imagine.parameters);
+  const bool may_be_left_out =
+      std::all_of(imagine.parameters.begin(), imagine.parameters.end(),
+                  [&](const std::string& name) { return IsMotionSet(entry, name); });
+  if (in.Has("default") || !may_be_left_out) {
+    imagine.defaults = ReadDefaults(in.Sub("default"), entry, imagine.parameters);
+  }
   const std::string on_late = in.Get("on_late", base::OneOf({"default", "wait"}));
   imagine.on_late = on_late == "wait" ? OnLate::kWait : OnLate::kDefault;
   if (in.Has("min_success"))
@@ -295,8 +306,8 @@ OperatorEntry ReadEntry(ParamReader in, const Operator& op, const Domain& domain
   entry.duration = ReadDuration(in);
   entry.resources = ReadResources(in.Sub("resources"), entry, data.capacities);
   if (in.Has("disturbs")) entry.disturbs = ReadDisturbs(&in, domain);
-  if (in.Has("imagine")) entry.imagine = ReadImagine(in.Sub("imagine"), entry);
   if (in.Has("leg")) entry.leg = ReadLegVariables(in.Sub("leg"), op, data.legs);
+  if (in.Has("imagine")) entry.imagine = ReadImagine(in.Sub("imagine"), entry);
   return entry;
 }
 
@@ -365,6 +376,13 @@ OperatorData ReadOperatorData(const std::string& yaml, const std::string& source
 SubtaskOrder LoadSubtaskOrder(const std::string& path, Domain::Language language) {
   ParamReader in = ParamReader::FromFile(path);
   return ReadSubtaskOrder(&in, language);
+}
+
+bool LacksDefaults(const OperatorData& data) {
+  return std::any_of(data.operators.begin(), data.operators.end(), [](const auto& op) {
+    const auto& imagine = op.second.imagine;
+    return imagine && imagine->defaults.size() < imagine->parameters.size();
+  });
 }
 
 const OperatorEntry& EntryOf(const OperatorData& data, std::string_view name) {

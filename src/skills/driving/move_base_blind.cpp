@@ -63,11 +63,11 @@ MoveBaseBlind::MoveBaseBlind(const MoveBaseBlindParams& params, const Pose2& X_M
 }
 
 double MoveBaseBlind::Deceleration() const {
-  return std::min(params_.deceleration, motion_set_.max_linear_acceleration);
+  return std::min(params_.deceleration, motion_set_.linear_deceleration());
 }
 
 double MoveBaseBlind::AngularDeceleration() const {
-  return std::min(params_.deceleration, motion_set_.max_angular_acceleration);
+  return std::min(params_.deceleration, motion_set_.angular_deceleration());
 }
 
 double MoveBaseBlind::LinearSpeed(double distance) const {

@@ -38,7 +38,7 @@ class ExecutionSystem(BlackboardAccess):
         config['operators'] = os.path.join(CONFIG, config['operators'])
         config['ontology'] = [os.path.join(CONFIG, path) for path in config['ontology']]
         config['monitor'].update(effect_timeout=1.0, break_delay=0.2, stop_timeout=5.0,
-                                 planning_timeout=3.0)
+                                 planning_timeout=3.0, late_wait=0.0)
         config['servers'].update(server_wait=1.0, cancel_wait=1.0)
         config['start_wait'] = 2.0
         config.update(changes)

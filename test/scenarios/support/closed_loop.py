@@ -39,7 +39,7 @@ MARK = 'HIRES_TEST_LOOP'
 # Of the execution monitor, in main ROS time: what programs may take to do their work. They do not
 # work faster when the robot does.
 WORKING_TIMES = ('effect_timeout', 'observation_delay', 'break_delay', 'stop_timeout',
-                 'arrival_margin', 'answer_grace', 'retry_period')
+                 'arrival_margin', 'answer_grace', 'late_wait', 'retry_period')
 
 # In the order of their start.
 NODES = ('sim_robot', 'middle_layer', 'world_tracker', 'translator', 'blackboard', 'planner',

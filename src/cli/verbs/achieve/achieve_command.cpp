@@ -149,6 +149,7 @@ loop::LoopRun AchieveLocally(const AchieveOptions& options, const std::string& p
   order.scenario = ScenarioPath(options, package_folder);
   order.task = base::Join(options.task, " ");
   order.imagination = options.imagination;
+  order.defaults = base::Join(options.defaults, ",");
   order.dry_run = options.is_dry_run;
   order.truth = options.truth;
   order.sensing = options.sensing;
@@ -207,6 +208,10 @@ void AddFiles(CLI::App* verb, CLI::Option* local, AchieveOptions* achieve) {
 
 /// How a task is played in one process.
 void AddLocalOptions(CLI::App* verb, CLI::Option* local, AchieveOptions* options) {
+  verb->add_option("--default", options->defaults,
+                   "with --local: PARAMETER=VALUE of a step that was not imagined, overrides the "
+                   "domain's (motion_set=fast: as in the dissertation)")
+      ->needs(local);
   verb->add_flag("--dry-run", options->is_dry_run,
                  "with --local: plan and imagine, print what the robot would do and when, begin "
                  "nothing; of running nodes the execution monitor decides (~dry_run)")

@@ -27,6 +27,7 @@ enum AchieveExitCode {
 struct AchieveOptions {
   std::vector<std::string> task;  ///< words
   std::string imagination, timeline, record;
+  std::vector<std::string> defaults;  ///< `is_local`: "motion_set=fast"
   std::string store;  ///< `is_local`: file for the Blackboard
   ReportOptions report;
   double wait{10.0};    ///< [s] for the execution monitor to be there
