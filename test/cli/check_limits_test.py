@@ -47,6 +47,27 @@ class CheckLimitsTest(unittest.TestCase):
         self.assertEqual(refused.returncode, 1)
         self.assertIn('race_peppermill: speed: 45 of 60 fail, at most 20 % may', refused.stderr)
 
+    def in_mujoco(self, falls):
+        """What is printed where so many of 60 fail in MuJoCo at each limit."""
+        answer = self.answer()
+        for limit in answer['limits']:
+            limit['mujoco_falls'] = falls
+        with tempfile.TemporaryDirectory() as folder:
+            program = f'{folder}/program'
+            with open(program, 'w', encoding='utf-8') as file:
+                file.write('#!/bin/sh\n[ "$2 $3 $4" = "race_peppermill 60 7" ] && cat > "$6" << END\n'
+                           f'{json.dumps(answer)}\nEND\n')
+            os.chmod(program, 0o755)
+            return check(folder, *FEW, '--mujoco', program)
+
+    def test_falls_in_mujoco_are_pooled_over_all_limits(self):
+        kept = self.in_mujoco(8)
+        self.assertEqual(kept.returncode, 0, kept.stderr)
+        self.assertIn('MuJoCo: 40 of 300 fail at the limits, at most 17.00 % (95 % confidence)', kept.stdout)
+        refused = self.in_mujoco(11)
+        self.assertEqual(refused.returncode, 1)
+        self.assertIn('MuJoCo: 55 of 300 fail', refused.stderr)
+
 
 if __name__ == '__main__':
     unittest.main()

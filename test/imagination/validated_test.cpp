@@ -7,6 +7,7 @@
 
 #include "hires/base/text.h"
 #include "hires/imagination/uncertainty.h"
+#include "hires/robot/load_robot.h"
 #include "imagination/room_rollouts.h"
 #include "support/messages.h"
 
@@ -82,6 +83,18 @@ TEST(ReadValidatedTest, EveryObjectHasAModel) {
   }
 }
 
+TEST(ReadValidatedTest, DefaultConfigurationIsWithinIt) {
+  const Validated validated = Configured();
+  const Uncertainty uncertainty = LoadUncertainty(kRoot + "/config/uncertainty.yaml");
+  EXPECT_LE(uncertainty.quantities.at("floor_roughness").Largest(),
+            validated.floor_roughness.at_most);
+  const robot::Robot robot = robot::LoadAnyRobot(kRoot + "/config/robots/pr2.yaml");
+  for (const auto& [name, set] : robot.profile.motion_sets) {
+    EXPECT_LE(set.max_linear_velocity, validated.linear_speed.at_most) << name;
+    EXPECT_LE(set.max_angular_velocity, validated.angular_speed.at_most) << name;
+  }
+}
+
 TEST(ReadValidatedTest, RefusesWhatItDoesNotKnow) {
   const std::string yaml = base::ReadTextFile(kRoot + "/config/validated.yaml", 1u << 16);
   const auto why = [&](const std::string& from, const std::string& to) {
@@ -92,7 +105,8 @@ TEST(ReadValidatedTest, RefusesWhatItDoesNotKnow) {
   };
   EXPECT_THAT(why("  tray:", "  trai:"), AllOf(HasSubstr("validated.yaml"), HasSubstr("'trai'")));
   EXPECT_THAT(why("levels:", "level:"), HasSubstr("key 'level' is unknown; did you mean 'levels'"));
-  EXPECT_THAT(why("at_most: 0.0 ", "at_most: -1 "), HasSubstr("floor_roughness.at_most is '-1'"));
+  EXPECT_THAT(why("at_most: 0.0005 ", "at_most: -1 "),
+              HasSubstr("floor_roughness.at_most is '-1'"));
   EXPECT_THAT(why("linear_speed:", "speeds: {}\nlinear_speed:"), HasSubstr("'speeds' is unknown"));
 }
 

@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "hires/physics/physics_world.h"
+#include "support/planar_oracle.h"
 #include "support/rounds.h"
 
 namespace hires::physics::physics_checks_test {
@@ -36,6 +37,25 @@ TEST(PhysicsChecksTest, MillOfTheAppendixObeysTheory) {
 
 TEST(PhysicsChecksTest, MillOfTheRepositoryObeysTheory) {
   ExpectAllPass({0.037, 0.274, 0.350}, "mill of the repository");
+}
+
+TEST(PhysicsChecksTest, FrictionObeysTheory) {
+  PhysicsWorld::TakeSolverMessages();
+  for (const PhysicsCheck& check : RunFrictionChecks()) {
+    EXPECT_TRUE(check.passed()) << check.name << ": expected " << check.expected << ", measured "
+                                << check.measured << " " << check.unit << ", error " << check.error;
+  }
+  EXPECT_TRUE(PhysicsWorld::TakeSolverMessages().empty());
+}
+
+TEST(PhysicsChecksTest, SpeedsWithoutAClosedFormAreThoseOfThePlanarOracle) {
+  for (const SlipAndTip& one : SlipAndTipCases()) {
+    const double r = one.body.radius, h = one.body.height;
+    const test_support::PlanarBody body{r, h / 2, (3.0 * r * r + h * h) / 12.0};
+    const double speed = test_support::PlanarLimit(body, one.friction, HUGE_VAL,
+                                                   test_support::SuddenStop, 0.05, 4.0, 1e-4);
+    EXPECT_NEAR(one.speed, speed, 1e-3 * speed) << "friction " << one.friction << ", radius " << r;
+  }
 }
 
 TEST(PhysicsChecksTest, EveryShapeRestsOnEveryPlateAndABoxTipsAsTheorySays) {

@@ -24,6 +24,21 @@ struct PhysicsCheck {
 std::vector<PhysicsCheck> RunPhysicsChecks(const UprightCylinder& body,
                                            const std::string& body_name);
 
+/// A cylinder that slides and tips when its ground stops at once.
+struct SlipAndTip {
+  UprightCylinder body;
+  double friction{0.0};
+  double speed{0.0};  ///< [m/s] of the ground from which the stop topples it
+};
+/// Without a closed form: computed by the planar solver of test/support/planar_oracle.h at a time
+/// step of 0.1 ms; a test computes them again.
+const std::vector<SlipAndTip>& SlipAndTipCases();
+
+/// Friction from 0.02 to 3, radius over height of the center of mass (b/c) from 0.1 to 2, each over
+/// 36 headings: sliding, tipping and both; on a slope; on ground that turns at 1 rad/s. Takes
+/// seconds.
+std::vector<PhysicsCheck> RunFrictionChecks();
+
 /// Boxes, a cylinder and a mesh at rest on plates of 0.005 to 0.1 m, parallel to their edges and
 /// turned, and the onset of tipping of a box over each of its edges. Takes seconds.
 std::vector<PhysicsCheck> RunShapeChecks();

@@ -161,6 +161,7 @@ class Driver {
         simulator_.Send(command);
       }
       simulator_.Step();
+      if (stage_.on_step) stage_.on_step(simulator_);
       if (++steps_ % steps_per_look_ == 0) Look();
     }
   }
@@ -228,12 +229,14 @@ DriveStage MakeDriveStage(const imagination::ImaginationSetup& setup,
 }
 
 DriveOutcome PlayDrive(const DriveStage& stage, const LoadDrive& drive, const base::Rng& rng) {
-  const simulation::Variation truth =
-      imagination::SampleVariation(*stage.setup->uncertainty, rng.Fork(kDriveTruth));
-  simulation::RobotSimulator simulator(stage.scene, truth, stage.start.world, stage.start.robot,
-                                       rng.Fork(kDriveSimulator), stage.setup->physics,
-                                       simulation::LevelOfDetail::kTray);
+  simulation::RobotSimulator simulator(stage.scene, VariationOfDrive(stage, rng), stage.start.world,
+                                       stage.start.robot, rng.Fork(kDriveSimulator),
+                                       stage.setup->physics, simulation::LevelOfDetail::kTray);
   return Driver(stage, drive, &simulator).Play();
+}
+
+simulation::Variation VariationOfDrive(const DriveStage& stage, const base::Rng& rng) {
+  return imagination::SampleVariation(*stage.setup->uncertainty, rng.Fork(kDriveTruth));
 }
 
 }  // namespace hires::reports

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
@@ -7,6 +8,7 @@
 #include "hires/geometry/pose.h"
 #include "hires/imagination/imagination_setup.h"
 #include "hires/imagination/start_state.h"
+#include "hires/simulation/robot_simulator.h"
 
 namespace hires::reports {
 
@@ -42,6 +44,8 @@ struct DriveStage {
   imagination::StartState start;
   double command_period{0.1};     ///< [s]
   bool ends_at_first_fall{true};  ///< false: when all payloads fell
+  /// Called after each step of a drive, to record it; may be empty.
+  std::function<void(const simulation::RobotSimulator&)> on_step{};
 };
 
 /// @throws base::ConfigError as imagination::StartOnTray.
@@ -54,5 +58,8 @@ DriveStage MakeDriveStage(const imagination::ImaginationSetup& setup,
 /// @pre the last step that may fall short is followed by one that commands a stand, or nothing.
 /// @param rng  of the truth, and of what the simulator draws.
 DriveOutcome PlayDrive(const DriveStage& stage, const LoadDrive& drive, const base::Rng& rng);
+
+/// What PlayDrive draws of robot, floor and object.
+simulation::Variation VariationOfDrive(const DriveStage& stage, const base::Rng& rng);
 
 }  // namespace hires::reports

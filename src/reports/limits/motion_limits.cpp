@@ -256,6 +256,9 @@ class LimitFinder {
     std::iota(truths.begin(), truths.end(), report_.num_truths);
     const auto at = FallenAmong(motion, value, truths);
     if (!at) return std::nullopt;
+    if (request_.on_check) {
+      for (const int truth : truths) request_.on_check(SampleOf(motion, value, truth));
+    }
     LimitCheck check{static_cast<int>(at->size()), std::nullopt};
     if (kAbove * value > motion.robots_own) return check;
     const auto above = FallenAmong(motion, kAbove * value, truths);
@@ -286,13 +289,8 @@ class LimitFinder {
     std::vector<DriveOutcome> outcomes(truths.size());
     const int num_tasks = static_cast<int>(truths.size());
     const auto work = [&](int task, const base::Advance& advance) {
-      const int truth = truths[task];
-      const double direction =
-          2.0 * geometry::kPi * (truth % report_.num_directions) / report_.num_directions;
-      outcomes[task] = PlayAll(motion.drives(value, direction),
-                               base::Rng(request_.seed)
-                                   .Fork(static_cast<std::uint64_t>(values_.size()))
-                                   .Fork(static_cast<std::uint64_t>(truth)));
+      const CheckSample sample = SampleOf(motion, value, truths[task]);
+      outcomes[task] = PlayAll(sample.drives, sample.rng);
       advance(1.0);
     };
     base::Crew crew = crew_;
@@ -303,6 +301,15 @@ class LimitFinder {
       crew_.on_progress(static_cast<double>(values_.size()) / kNumMotions, 0.0);
     }
     return outcomes;
+  }
+
+  CheckSample SampleOf(const Motion& motion, double value, int truth) const {
+    const double direction =
+        2.0 * geometry::kPi * (truth % report_.num_directions) / report_.num_directions;
+    return {motion.motion, motion.drives(value, direction),
+            base::Rng(request_.seed)
+                .Fork(static_cast<std::uint64_t>(values_.size()))
+                .Fork(static_cast<std::uint64_t>(truth))};
   }
 
   /// In one truth, until a drive loses the load.

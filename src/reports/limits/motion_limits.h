@@ -1,19 +1,29 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "base/parallel.h"
+#include "hires/base/rng.h"
 #include "hires/imagination/imagination_setup.h"
 #include "reports/limits/given_limits.h"
+#include "reports/limits/load_drive.h"
 #include "reports/limits/payload_support.h"
 
 // How fast, how suddenly and how sharply a robot may drive so that what stands on its tray stays
 // there. docs/notes_limits.md says how it is found and what it was compared with.
 namespace hires::reports {
+
+/// A new sample that is played at a limit: all of its drives must keep the payload.
+struct CheckSample {
+  std::string motion;
+  std::vector<LoadDrive> drives;
+  base::Rng rng;  ///< of PlayDrive
+};
 
 /// What is looked for.
 struct LimitsRequest {
@@ -24,6 +34,8 @@ struct LimitsRequest {
   double command_period{0.1};         ///< [s] between two velocities that a local planner commands
   std::uint64_t seed{1};
   int check_truths{0};  ///< new ones to play at each limit, and 10 % above
+  /// Called with each new sample at a limit, to play it elsewhere; may be empty.
+  std::function<void(const CheckSample&)> on_check{};
 };
 
 /// How often new truths lose the load.

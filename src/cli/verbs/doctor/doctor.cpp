@@ -94,6 +94,7 @@ void CheckPhysics(Findings* findings) {
   for (const auto& mill : mills) {
     ShowChecks(mill.name, physics::RunPhysicsChecks(mill.body, mill.name), findings);
   }
+  ShowChecks("friction", physics::RunFrictionChecks(), findings);
   ShowChecks("every shape", physics::RunShapeChecks(), findings);
 }
 
