@@ -121,11 +121,12 @@ TEST(RolloutTest, EveryLoadThatFallsCounts) {
   EXPECT_EQ(Play(setup, kFast).falls, 2);
 }
 
-/// Things in the way of a drive that does not look, and under whose belly they hardly fit: it runs
-/// over some, and some of those gain energy that nothing gave them.
-TEST(RolloutTest, WhatWasKnockedOverBeforePhysicsBrokeCounts) {
+/// Objects in the path of a drive that does not look, and hardly lower than its belly: it knocks
+/// them over and runs over them. With friction bounded by the normal force of the same step they
+/// gain no energy from that.
+TEST(RolloutTest, ObjectsThatAreRunOverDoNotBreakPhysics) {
   base::Rng rng(21);
-  int broken_after = 0;
+  int num_down = 0;
   for (int round = 0; round < hires::test_support::Rounds(240); ++round) {
     world::World room = Room();
     const double radius = rng.Uniform(0.025, 0.05);
@@ -141,33 +142,24 @@ TEST(RolloutTest, WhatWasKnockedOverBeforePhysicsBrokeCounts) {
     thing.model = "thing";
     thing.X_MO.translation = {2.2, 2.0 + rng.Uniform(-0.3, 0.3), 0.0002};
     setup.world_state.objects = {thing};
-    bool is_down = false, is_broken = false, is_down_before = false;
+    bool is_down = false, is_broken = false;
     simulation::FallWatch watch(setup.standing);
     RolloutHooks hooks;
     hooks.on_begin = [&](const simulation::RobotSimulator&) {
       watch = simulation::FallWatch(setup.standing);
-      is_down = is_broken = is_down_before = false;
+      is_down = is_broken = false;
     };
     hooks.on_look = [&](const simulation::RobotSimulator& simulator) {
       if (simulator.GetWorldState().objects.empty()) return;
-      if (simulator.broken_object() && !is_broken) {
-        is_broken = true;
-        is_down_before = is_down;
-      }
+      is_broken = is_broken || simulator.broken_object();
       watch.Look(simulator, 0);
       is_down = watch.detector().is_down();
     };
-    const auto result = PlayRollout(setup, kBlind, 0, hooks);
-    ASSERT_TRUE(result);
-    if (!is_broken) continue;
-    EXPECT_EQ(ToString(result->failure.code), is_down_before ? "knocked_over" : "physics_broke")
-        << "round " << round;
-    if (!is_down_before) continue;
-    EXPECT_EQ(result->failure.subjects, std::vector<std::string>{"thing1"});
-    EXPECT_EQ(result->falls, 1);
-    ++broken_after;
+    ASSERT_TRUE(PlayRollout(setup, kBlind, 0, hooks));
+    EXPECT_FALSE(is_broken) << "round " << round;
+    num_down += is_down ? 1 : 0;
   }
-  EXPECT_GT(broken_after, 0) << "nothing was shown";
+  EXPECT_GT(num_down, 0) << "nothing was shown";
 }
 
 TEST(RolloutTest, TimeIsUp) {

@@ -46,7 +46,7 @@ TEST(HazardLimitsTest, LiquidHasARowAndAVesselWithoutOneANote) {
   ASSERT_NE(limit, nullptr);
   EXPECT_NEAR(limit->closed_form, setup.scene->world.gravity * 0.008 / (2.0 * 0.036), 1e-9);
   EXPECT_EQ(hazards.MostAcceleration(), limit->closed_form);
-  EXPECT_THAT(ClosedFormText(hazards.bounds, false),
+  EXPECT_THAT(ClosedFormText({{}, {}, hazards.bounds}, false),
               AllOf(HasSubstr("liquid reaches rim"), HasSubstr("1.088 m/s^2"),
                     HasSubstr("robot tips, turning")));
 }

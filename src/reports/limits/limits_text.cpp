@@ -129,6 +129,18 @@ std::string SlidesAtEveryStart(double acceleration, double slides) {
       acceleration, slides);
 }
 
+nlohmann::ordered_json ToJson(const HazardLimits& limits) {
+  nlohmann::ordered_json hazards = nlohmann::ordered_json::array();
+  for (const MotionBounds& bound : limits.bounds) {
+    hazards.push_back({{"hazard", bound.motion},
+                       {"unit", bound.unit},
+                       {"limit", OrNull(bound.closed_form)},
+                       {"robots_own", bound.robots_own},
+                       {"closed_form_states", bound.stated}});
+  }
+  return hazards;
+}
+
 }  // namespace
 
 std::string ClosedFormText(const ClosedForms& forms, bool is_assumed) {
@@ -259,14 +271,6 @@ nlohmann::ordered_json ToJson(const LimitsReport& report) {
                {"speed", report.careful->value ? nlohmann::ordered_json(*report.careful->value)
                                                : nlohmann::ordered_json()}};
   }
-  nlohmann::ordered_json hazards = nlohmann::ordered_json::array();
-  for (const MotionBounds& bound : report.hazards.bounds) {
-    hazards.push_back({{"hazard", bound.motion},
-                       {"unit", bound.unit},
-                       {"limit", OrNull(bound.closed_form)},
-                       {"robots_own", bound.robots_own},
-                       {"closed_form_states", bound.stated}});
-  }
   return {{"object", Names(report.request)},
           {"model", base::Join(report.models, ", ")},
           {"payloads", payloads},
@@ -274,7 +278,7 @@ nlohmann::ordered_json ToJson(const LimitsReport& report) {
           {"controller_assumed", report.request.is_controller_assumed},
           {"assumed", report.assumed},
           {"left_out", LeftOut(report)},
-          {"hazards", hazards},
+          {"hazards", ToJson(report.hazards)},
           {"directions", report.num_directions},
           {"own_angular_acceleration", report.own_angular_acceleration},
           {"max_fall", report.request.max_fall},

@@ -195,11 +195,11 @@ int RunLimitsVerb(const LimitsOptions& options, const std::string& package_folde
   request.seed = options.seed;
   request.check_truths = options.check_truths;
   // Whoever asks reads these while the rest is played.
-  std::vector<reports::MotionBounds> bounds = reports::ClosedFormLimits(request.objects, setup);
+  reports::ClosedForms forms = reports::ClosedFormLimits(request.objects, setup);
   const reports::HazardLimits hazards = reports::FindHazardLimits(request.objects, setup);
-  bounds.insert(bounds.end(), hazards.bounds.begin(), hazards.bounds.end());
+  forms.weakest.insert(forms.weakest.end(), hazards.bounds.begin(), hazards.bounds.end());
   std::cout << AssumedText(setup.scene->robot)
-            << reports::ClosedFormText(bounds, request.is_controller_assumed) << '\n'
+            << reports::ClosedFormText(forms, request.is_controller_assumed) << '\n'
             << std::flush;
   const base::Crew crew = CrewOf(options, cancelled);
   const bool is_done = options.given.empty() ? Find(options, request, setup, crew)
