@@ -61,10 +61,11 @@ TEST(LimitsCommandTest, ClosedFormsAreShownBeforeTheFirstDrive) {
   };
   EXPECT_EQ(RunLimitsVerb(options, HIRES_SOURCE_DIR, cancelled), kExitCancelled);
   ASSERT_TRUE(shown);
-  EXPECT_THAT(*shown,
-              AllOf(HasSubstr("speed           0.370 m/s"), HasSubstr("acceleration  2.646 m/s^2"),
-                    HasSubstr("deceleration  2.646 m/s^2"), HasSubstr("turning       1.322 rad/s"),
-                    Not(HasSubstr("simulated"))));
+  EXPECT_THAT(*shown, AllOf(HasSubstr("speed                       0.370 m/s"),
+                            HasSubstr("acceleration              2.646 m/s^2"),
+                            HasSubstr("deceleration              2.646 m/s^2"),
+                            HasSubstr("turning                   1.322 rad/s"),
+                            Not(HasSubstr("simulated"))));
 }
 
 TEST(LimitsCommandTest, PrintsATableAndWhatMoveBaseTakes) {

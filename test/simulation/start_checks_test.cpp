@@ -61,7 +61,8 @@ TEST(StartChecksTest, TheModelsOriginIsBlamedWhereJustThatLiftsItOut) {
 
 TEST(StartChecksTest, OfTwoMeshesNeitherIsInTheOtherWhereOneGoesRoundIt) {
   using hires::test_support::Shape;
-  const std::vector<geometry::Collision> basket{Shape("basket", hires::test_support::Basket(), {})};
+  const std::vector<geometry::Collision> basket{
+      Shape("basket", hires::test_support::Basket(), Eigen::Vector3d::Zero())};
   const std::vector<geometry::Collision> apple{
       Shape("apple", hires::test_support::BoxMesh({0.08, 0.08, 0.08}), {0.0, 0.0, 0.04})};
   const geometry::Pose3 X_inside{{0.05, 0.02, 0.011}, Eigen::Quaterniond::Identity()};

@@ -16,7 +16,7 @@ struct CostPosterior {
   double duration_sd{0.0};  ///< [s] standard error of that mean, >= 0
   double penalty{0.0};      ///< [s] mean penalty of a failure, >= 0
   double failures{0.0};     ///< 0 .. rollouts
-  double rollouts{1.0};     ///< > 0
+  double rollouts{1.0};     ///< positive
 
   double FailureProbability() const { return (failures + 0.5) / (rollouts + 1.0); }
   double Mean() const { return duration + FailureProbability() * penalty; }
