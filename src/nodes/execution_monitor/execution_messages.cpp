@@ -32,6 +32,7 @@ bool IsUnknown(const hires::ImagineResult& result) {
   switch (result.outcome) {
     case hires::ImagineResult::RANKED:
     case hires::ImagineResult::RANKED_AT_DEADLINE:
+    case hires::ImagineResult::CLOSE:
     case hires::ImagineResult::ALL_FAILED:
     case hires::ImagineResult::UNDECIDED:
     case hires::ImagineResult::NO_WORKER:
