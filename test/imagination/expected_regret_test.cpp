@@ -110,7 +110,7 @@ TEST(AllocateRoundTest, TheClosestRivalAndTheNoisiestGetMost) {
   EXPECT_EQ(noisy[1], 16);
 }
 
-TEST(AllocateRoundTest, WhatHasNoRoomGetsNothing) {
+TEST(AllocateRoundTest, AlternativeWithoutRoomGetsNothing) {
   EXPECT_THAT(AllocateRound({Normal(10.0, 1.0), Normal(11.0, 1.0)}, 0, 16, {0, 100}),
               ElementsAre(0, 16));
   EXPECT_THAT(AllocateRound({Normal(10.0, 1.0), Normal(11.0, 1.0)}, 0, 16, {5, 2}),
@@ -123,7 +123,7 @@ TEST(AllocateRoundTest, WithoutAnyDifferenceAllGetTheSame) {
               ElementsAre(8, 8));
 }
 
-TEST(RolloutsToSettleTest, WhatItNamesSettles) {
+TEST(RolloutsToSettleTest, NumberOfRolloutsSettlesTheChoice) {
   for (const auto& [own, other] : std::vector<std::pair<CostPosterior, CostPosterior>>{
            {Failing(10.0, 0, 64), Failing(12.0, 0, 64)},
            {Failing(10.0, 4, 64), Failing(30.0, 1, 64)},

@@ -513,13 +513,13 @@ TEST(NextRoundTest, WhileNoneIsRecommendedThoseThatMayBeShareTheRound) {
   EXPECT_THAT(Next({half, half, Times(64, Fall())}), ElementsAre(16, 16, 0));
 }
 
-TEST(NextRoundTest, WhatFailsIsNoRival) {
+TEST(NextRoundTest, FailingAlternativeIsNoRival) {
   // It would be cheaper, if that counted: 1 s and a fall for 5 s.
   const Criteria cheap = ByCost(5.0);
   EXPECT_THAT(Next({Times(64, Fall(1.0)), Times(64, Success(30.0))}, cheap), Each(0));
 }
 
-TEST(NextRoundTest, WhatHasAllItsRolloutsGetsNoMore) {
+TEST(NextRoundTest, AlternativeAtItsMaximumGetsNoMore) {
   const std::vector<Results> results{Times(20, Success(10.0)), Times(16, Success(10.5))};
   const auto next = Next(results, kDear, 20);
   EXPECT_EQ(next[0], 0);
